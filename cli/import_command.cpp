@@ -1,12 +1,14 @@
 #include <cstdio>
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include <CLI/CLI.hpp>
 
 #include "cli/command_line.h"
 #include "cli/load_job.h"
 #include "cli/number_range.h"
+#include "cli/scene_options.h"
 #include "core/base/printable.h"
 #include "core/base/text.h"
 #include "core/job/scene_document.h"
@@ -21,7 +23,7 @@ int import_command(int argc, char** argv) {
       "folder JOB_files beside it. 'hyades render' takes scenes without this too.",
       "hyades import");
   core::WriteSceneJob request;
-  app.add_option("scene", request.scene, "the scene or mesh (.glb, .gltf, .pbrt, .obj, .ply)")
+  app.add_option("scene", request.scene, "the scene, mesh or script (.glb, .gltf, .pbrt, .obj, .ply, .lua)")
       ->required();
   app.add_option("-o,--output", request.job, "the job to be written (default: SCENE.yaml, here)");
   app.add_option("--media", request.media,
@@ -34,6 +36,8 @@ int import_command(int argc, char** argv) {
       ->check(in_range(0.001F, 1e6F))
       ->capture_default_str();
   app.add_flag("--overwrite", request.overwrite, "replace files that are there already");
+  std::vector<std::string> set;
+  declare_set_option(app, set);
   bool missing_textures = false;
   app.add_flag("--missing-textures", missing_textures,
                "let magenta stand in for pictures that are not there and that have to be read");
@@ -44,13 +48,14 @@ int import_command(int argc, char** argv) {
       "exit status: 0 written, 2 not");
   if (const auto status = parse_command_line(app, argc, argv, kBadInput)) return *status;
   if (!core::is_scene_file(request.scene)) {
-    std::fprintf(stderr, "%s: expected a scene or mesh (.glb, .gltf, .pbrt, .obj, .ply)\n",
+    std::fprintf(stderr, "%s: expected a scene, mesh or script (.glb, .gltf, .pbrt, .obj, .ply, .lua)\n",
                  core::printable(request.scene).c_str());
     return kBadInput;
   }
   if (request.job.empty()) {
     request.job = std::filesystem::path(request.scene).stem().string() + ".yaml";
   }
+  request.set = script_settings(set);
   if (missing_textures) request.missing = core::MissingTextures::magenta;
   const auto written = core::write_scene_job(request);
   if (!written) {

@@ -6,6 +6,7 @@
 #include <CLI/CLI.hpp>
 
 #include "core/base/printable.h"
+#include "core/job/script_include.h"
 
 namespace hyades::cli {
 
@@ -13,7 +14,34 @@ namespace {
 
 constexpr size_t kMostNotes = 40;
 
+/// What is wrong with "seed=3"; empty where nothing is.
+std::string wrong_set(const std::string& text) {
+  const size_t equals = text.find('=');
+  if (equals == std::string::npos) {
+    return "'" + core::printable(text) + "', expected NAME=VALUE, as in seed=3";
+  }
+  return core::wrong_setting(text.substr(0, equals), text.substr(equals + 1));
+}
+
 }  // namespace
+
+void declare_set_option(CLI::App& app, std::vector<std::string>& set) {
+  app.add_option("--set", set,
+                 "of a script (.lua), a parameter: seed=3. May be given several times; one that "
+                 "the script does not know is answered with those that it does")
+      ->type_name("NAME=VALUE")
+      ->allow_extra_args(false)  // what follows is the job
+      ->check(wrong_set);
+}
+
+core::ScriptSettings script_settings(const std::vector<std::string>& set) {
+  core::ScriptSettings settings;
+  for (const std::string& text : set) {
+    const size_t equals = text.find('=');
+    settings.emplace_back(text.substr(0, equals), text.substr(equals + 1));
+  }
+  return settings;
+}
 
 void declare_scene_options(CLI::App& app, SceneOptions& options) {
   app.add_option("--media", options.media,
@@ -26,13 +54,17 @@ void declare_scene_options(CLI::App& app, SceneOptions& options) {
                "let magenta stand in for pictures that are not there");
   app.add_flag("--follow-links", options.follow_links,
                "follow links that lead out of a scene's folder: only of scenes that you trust");
+  declare_set_option(app, options.set);
 }
 
 core::JobFileOptions job_file_options(const SceneOptions& options) {
   return {
       options.media,
       options.missing_textures ? core::MissingTextures::magenta : core::MissingTextures::refused,
-      options.animation, options.loop, options.follow_links};
+      options.animation,
+      options.loop,
+      options.follow_links,
+      script_settings(options.set)};
 }
 
 void print_notes(const core::JobFiles& files) {

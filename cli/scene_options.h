@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "import/job_files.h"
 
@@ -17,10 +18,17 @@ struct SceneOptions {
   bool loop = false;              ///< whether it begins again where it ends
   bool missing_textures = false;  ///< pictures that are not there are magenta, not errors
   bool follow_links = false;      ///< out of scenes' folders too
+  std::vector<std::string> set;   ///< of a script: "name=value"
 };
 
-/// Options --media, --animation, --loop, --missing-textures and --follow-links.
+/// Options --media, --animation, --loop, --missing-textures, --follow-links and --set.
 void declare_scene_options(CLI::App& app, SceneOptions& options);
+
+/// Option --set of scripts, into `set`.
+void declare_set_option(CLI::App& app, std::vector<std::string>& set);
+
+/// "seed=3" as name and value, each; those must have been checked by declare_set_option().
+core::ScriptSettings script_settings(const std::vector<std::string>& set);
 
 core::JobFileOptions job_file_options(const SceneOptions& options);
 

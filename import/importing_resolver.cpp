@@ -1,6 +1,7 @@
 #include "import/importing_resolver.h"
 
 #include <cstddef>
+#include <filesystem>
 #include <map>
 #include <mutex>
 #include <optional>
@@ -32,6 +33,8 @@ struct Inside {
 
 /// Splits "robot.glb.files/meshes/body.ply"; nothing where no folder on the way is a scene's.
 std::optional<Inside> inside_of(const std::string& reference) {
+  const auto script = document_of(reference);
+  if (script && is_script_file(script->scene)) return Inside{script->scene, {}};
   const std::string mark = std::string(kMadeFolder) + "/";
   for (size_t at = reference.find(mark); at != std::string::npos;
        at = reference.find(mark, at + 1)) {
@@ -39,6 +42,11 @@ std::optional<Inside> inside_of(const std::string& reference) {
     if (is_scene_file(scene)) return Inside{scene, reference.substr(at + mark.size())};
   }
   return std::nullopt;
+}
+
+/// `reference` without its folder.
+std::string file_name(const std::string& reference) {
+  return std::filesystem::path(reference).filename().string();
 }
 
 }  // namespace
@@ -132,12 +140,17 @@ struct ImportingResolver::State {
     request.fps = wanted.fps;
     request.animation = wanted.animation;
     request.loop = wanted.loop;
-    request.beside = "../";
+    request.frames = wanted.frames;
+    request.set = wanted.set;
+    const bool script = is_script_file(wanted.scene);
+    if (script) request.made = file_name(wanted.scene) + std::string(kMadeFolder) + "/";
+    if (!script) request.beside = "../";
     const auto told = (*scene)->sections(request);
     if (!told) return told.error();
     if (auto inside = lenient.check(wanted.scene, told->files); !inside) return inside.error();
     for (const std::string& line : told->notes) lenient.note(line);
-    return owned(write_yaml(*told->sections));
+    return owned(script ? write_yaml_of_script(*told->sections, file_name(wanted.scene))
+                        : write_yaml(*told->sections));
   }
 
   /// Whether a file of a scene's folder is to be made: not where no such scene is.

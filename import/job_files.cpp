@@ -43,6 +43,23 @@ class BytesStream : private std::streambuf, public std::istream {
   Bytes bytes_;
 };
 
+/// Whether the options are for what the file is.
+Status check_options(const std::string& path, const JobFileOptions& options) {
+  const bool tells_all = is_script_file(path) || !is_scene_file(path);
+  if (!options.media.empty() && tells_all) {
+    return Error{path +
+                 ": --media is for scenes and meshes (.glb, .obj, ...); a job names its "
+                 "media itself"};
+  }
+  if (!options.set.empty() && !is_script_file(path)) {
+    return Error{path +
+                 ": --set is for scripts (.lua); a job sets those of the scripts that it includes: "
+                 "include: {lua: city.lua, set: {" +
+                 options.set.front().first + ": ...}}"};
+  }
+  return {};
+}
+
 }  // namespace
 
 std::string reference_from(const std::string& path, const std::string& folder) {
@@ -68,12 +85,8 @@ Result<std::unique_ptr<JobFiles>> JobFiles::open(const std::string& path,
       *opened->disk_, options.missing,
       options.follow_links ? SceneLinks() : SceneLinks(opened->folder_));
   const std::string file = std::filesystem::path(path).filename().string();
+  if (auto fit = check_options(path, options); !fit) return fit.error();
   if (!is_scene_file(path)) {
-    if (!options.media.empty()) {
-      return Error{path +
-                   ": --media is for scenes and meshes (.glb, .obj, ...); a job names its "
-                   "media itself"};
-    }
     opened->document_ = file;
     return opened;
   }
@@ -83,6 +96,8 @@ Result<std::unique_ptr<JobFiles>> JobFiles::open(const std::string& path,
   request.media_in_job = request.media;
   request.how.animation = options.animation;
   request.how.loop = options.loop;
+  request.how.set = options.set;
+  if (is_script_file(path)) request.how.fps = 0.0F;
   request.how.made = file + std::string(kMadeFolder) + "/";
   auto job = scene_job(opened->importing_->sources(), request);
   if (!job) return job.error();
@@ -91,7 +106,9 @@ Result<std::unique_ptr<JobFiles>> JobFiles::open(const std::string& path,
   opened->importing_->adopt(file, job->source);
   opened->notes_ = std::move(job->notes);
   opened->document_ = file + ".yaml";
-  opened->importing_->add(opened->document_, write_yaml(*job->tree));
+  opened->importing_->add(opened->document_, is_script_file(path)
+                                                 ? write_yaml_of_script(*job->tree, file)
+                                                 : write_yaml(*job->tree));
   return opened;
 }
 

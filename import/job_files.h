@@ -18,13 +18,15 @@ struct JobFileOptions {
   std::string animation;      ///< of a scene: SceneRequest::animation
   bool loop = false;          ///< of a scene: SceneRequest::loop
   bool follow_links = false;  ///< of scenes' folders, wherever they lead
+  ScriptSettings set{};       ///< of a script: its parameters
 };
 
 /// A job, or a scene that is to be one (is_scene_file()), with the door to all files that it names.
 class JobFiles {
  public:
   /// Opens the job or scene at `path`. A scene is read, and becomes the job of scene_job(). Errors:
-  /// no such file, a scene that cannot be read, media for what is no scene.
+  /// no such file, a scene that cannot be read, media for what is no scene of another tool, settings
+  /// for what is no script.
   static Result<std::unique_ptr<JobFiles>> open(const std::string& path,
                                                 const JobFileOptions& options = {});
 

@@ -5,6 +5,7 @@
 
 #include "core/job/output_path.h"
 #include "import/gltf/read_gltf.h"
+#include "import/lua/read_script.h"
 #include "import/obj/read_obj_scene.h"
 #include "import/pbrt/read_pbrt.h"
 #include "import/scene_source.h"
@@ -21,12 +22,13 @@ struct Row {
   Reader read;
 };
 
-constexpr std::array<Row, 5> kReaders = {{
+constexpr std::array<Row, 6> kReaders = {{
     {".glb", read_gltf},
     {".gltf", read_gltf},
     {".pbrt", read_pbrt},
     {".obj", read_obj_scene},
     {".ply", read_obj_scene},
+    {".lua", lua::read_script},
 }};
 
 }  // namespace
@@ -43,7 +45,7 @@ Result<std::shared_ptr<const SceneSource>> read_scene(AssetResolver& files,
   }
   return Error{reference +
                ": no scene or mesh that is known by its name; expected one that ends in "
-               ".gltf, .glb, .pbrt, .obj or .ply"};
+               ".gltf, .glb, .pbrt, .obj, .ply or .lua"};
 }
 
 }  // namespace hyades::core

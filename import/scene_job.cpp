@@ -257,6 +257,11 @@ Result<SceneJob> scene_job(AssetResolver& files, const SceneJobRequest& request)
   }
   const std::string stem = std::filesystem::path(request.scene).stem().string();
   SceneJob job{nullptr, *source, std::move(told->notes), std::move(told->files), {}};
+  // A script says all that a job would.
+  if (is_script_file(request.scene)) {
+    job.tree = scene;
+    return job;
+  }
   job.tree = staged(*scene, *told, safe_name(stem, "scene"), job.added);
   return job;
 }

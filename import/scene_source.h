@@ -8,6 +8,7 @@
 #include "core/base/assets.h"
 #include "core/base/bounds.h"
 #include "core/base/result.h"
+#include "core/job/scene_document.h"
 #include "core/job/yaml_tree.h"
 
 /// Scenes of other tools as parts of a job. An importer reads a scene file once and says it in the
@@ -19,7 +20,8 @@ namespace hyades::core {
 struct SceneRequest {
   /// Of all names that the scene gives, a '.' follows: "robot" makes "robot.Skin". Empty: none.
   std::string prefix;
-  float fps = 24.0F;  ///< the job's frames per second: frame f shows the scene at (f - 1) / fps
+  /// The job's frames per second: frame f shows the scene at (f - 1) / fps. 0: a script's own.
+  float fps = 24.0F;
   std::string
       animation;      ///< of several in the file, the one meant; empty: the first; "none": still
   bool loop = false;  ///< whether the animation begins again where it ends
@@ -27,12 +29,15 @@ struct SceneRequest {
   std::string made;
   /// Stands before the names of files that lie beside the scene's: "../".
   std::string beside;
+  std::string frames{};  ///< of a script: the range of the job ("1-48"); empty: the script's own
+  ScriptSettings set{};  ///< of a script: its parameters
 };
 
 /// A scene in the language of jobs.
 struct SceneSections {
   /// A map of a job's sections, docs/job.md: textures, materials, media, groups, objects, lights,
-  /// environment, camera, frames, film, sampling, integrator, atmosphere; those that it has.
+  /// environment, camera, frames, film, sampling, integrator, atmosphere; those that it has. Of a
+  /// script: whatever a job may have.
   YamlPtr sections;
   /// Of all that is seen, at the first frame, in the space of the job; empty: not known. For who
   /// looks for a camera's place.
@@ -61,7 +66,8 @@ class SceneSource {
 };
 
 /// Reads a scene file: `reference` through `files`, and what it names in its turn. Told apart by
-/// its name: .gltf, .glb, .pbrt, .obj, .ply. Errors name the file and the place.
+/// its name: .gltf, .glb, .pbrt, .obj, .ply, .lua. Errors name the file and the place. `files` must
+/// outlive what is returned.
 Result<std::shared_ptr<const SceneSource>> read_scene(AssetResolver& files,
                                                       const std::string& reference);
 

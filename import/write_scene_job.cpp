@@ -17,6 +17,7 @@
 #include "core/geometry/write_ply.h"
 #include "core/job/output_path.h"
 #include "core/job/parse.h"
+#include "core/job/scene_document.h"
 #include "core/job/yaml_build.h"
 #include "core/job/yaml_writer.h"
 #include "import/importing_resolver.h"
@@ -80,7 +81,8 @@ class Writer {
     how.scene = reference_from(request_.scene, folder_);
     how.media = reference_from(request_.media, folder_);
     how.media_in_job = how.media;
-    how.how.fps = request_.fps;
+    how.how.fps = is_script_file(request_.scene) ? 0.0F : request_.fps;
+    how.how.set = request_.set;
     how.how.animation = request_.animation;
     how.how.loop = request_.loop;
     how.how.made = made_;

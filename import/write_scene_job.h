@@ -16,7 +16,8 @@ struct WriteSceneJob {
   std::string media;      ///< path of a file of media for its materials; empty: none
   std::string animation;  ///< SceneRequest::animation
   bool loop = false;      ///< SceneRequest::loop
-  float fps = 24.0F;
+  float fps = 24.0F;          ///< of a script: its own
+  ScriptSettings set{};       ///< SceneRequest::set
   bool overwrite = false;     ///< replace what is there already
   bool follow_links = false;  ///< of the scene's folder, wherever they lead
   MissingTextures missing = MissingTextures::refused;

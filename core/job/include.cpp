@@ -10,8 +10,10 @@
 #include <utility>
 
 #include "core/job/join_trees.h"
+#include "core/job/made_lines.h"
 #include "core/job/media_file.h"
 #include "core/job/scene_objects.h"
+#include "core/job/script_include.h"
 
 namespace hyades::core {
 
@@ -31,7 +33,18 @@ class Loader {
     bytes_ += text.size();
     YamlPtr own = parse_yaml(text, shown, diagnostics_);
     if (own == nullptr || own->kind != YamlNode::Kind::map) return own;
-    if (open_.empty()) fps_ = fps_of(*own);
+    // What parts of a script say is said by the script, whose folder its files are named from.
+    if (!open_.empty()) {
+      for (const std::string& part : MadeLines(text, shown).other_files()) {
+        tree.shown[part] = reference;
+      }
+    }
+    if (open_.empty()) {
+      fps_ = fps_of(*own);
+      says_fps_ = frames_key(*own, "fps") != nullptr;
+      const YamlNode* range = frames_range(*own);
+      if (range != nullptr && range->kind == YamlNode::Kind::scalar) frames_ = range->scalar;
+    }
     open_.push_back(reference);
     seen_.insert(reference);
     const YamlEntry* include = own->find("include");
@@ -137,12 +150,47 @@ class Loader {
     return Opened{reference, shown, std::move(*bytes)};
   }
 
+  static const YamlNode* frames_key(const YamlNode& root, const char* key) {
+    const YamlEntry* frames = root.find("frames");
+    const YamlEntry* entry = frames != nullptr ? frames->value->find(key) : nullptr;
+    return entry != nullptr ? entry->value.get() : nullptr;
+  }
+
+  /// `frames: 1-48`, or the range of `frames: {range: 1-48}`; null where it is not said.
+  static const YamlNode* frames_range(const YamlNode& root) {
+    const YamlEntry* frames = root.find("frames");
+    const bool short_form = frames != nullptr && frames->value->kind == YamlNode::Kind::scalar;
+    return short_form ? frames->value.get() : frames_key(root, "range");
+  }
+
   YamlPtr load_named(const YamlNode& name, const std::string& from) {
+    if (name.kind == YamlNode::Kind::map) return load_script(name, from);
+    if (name.kind == YamlNode::Kind::scalar && is_script_file(name.scalar)) {
+      return load_scene(script(name.scalar), name, from, "include");
+    }
     if (name.kind == YamlNode::Kind::scalar && is_scene_file(name.scalar)) {
       return load_scene({name.scalar, {}, fps_, {}}, name, from, "include");
     }
     const auto file = open_named(name, from, "include");
     return file ? load_opened(*file) : nullptr;
+  }
+
+  /// A script as the job asks for it, without settings.
+  SceneDocument script(const std::string& file) const {
+    SceneDocument wanted;
+    wanted.scene = file;
+    wanted.fps = says_fps_ ? fps_ : 0.0F;
+    wanted.frames = frames_;
+    return wanted;
+  }
+
+  /// `{lua: city.lua, set: {seed: 3}}`.
+  YamlPtr load_script(const YamlNode& node, const std::string& from) {
+    const auto settings = read_script_include(node, diagnostics_);
+    if (!settings) return nullptr;
+    SceneDocument wanted = script(settings->scene);
+    wanted.set = settings->set;
+    return load_scene(wanted, *node.find("lua")->value, from, "include");
   }
 
   /// The document of a scene of another tool, which lies beside the scene.
@@ -201,7 +249,10 @@ class Loader {
   std::vector<std::string> open_;  ///< files being read, from the job inwards
   std::set<std::string> seen_;
   size_t bytes_ = 0;
-  float fps_ = SceneDocument().fps;  ///< of the job itself
+  // Of the job itself:
+  float fps_ = SceneDocument().fps;
+  bool says_fps_ = false;
+  std::string frames_;  ///< empty: it says none
 };
 
 }  // namespace

@@ -15,7 +15,11 @@ namespace hyades::core {
 
 namespace {
 
-constexpr std::array<std::string_view, 5> kExtensions = {".gltf", ".glb", ".pbrt", ".obj", ".ply"};
+constexpr std::string_view kScript = ".lua";
+constexpr std::array<std::string_view, 6> kExtensions = {".gltf", ".glb", ".pbrt",
+                                                         ".obj",  ".ply", kScript};
+constexpr std::string_view kSetting = "set.";
+constexpr size_t kLongestSetting = 64;
 constexpr std::string_view kName = "scene";
 constexpr std::string_view kEnd = ".yaml";
 
@@ -70,14 +74,45 @@ bool read_option(std::string_view option, SceneDocument& document) {
   } else if (key == "loop") {
     if (*value != "true") return false;
     document.loop = true;
+  } else if (key == "frames") {
+    document.frames = *value;
+  } else if (key.starts_with(kSetting) && is_setting_name(key.substr(kSetting.size()))) {
+    document.set.emplace_back(key.substr(kSetting.size()), *value);
   } else if (key == "fps") {
     double fps = 0.0;
-    if (!parse_number(*value, fps) || !(fps > 0.0 && fps <= 1e6)) return false;
+    const bool script = is_script_file(document.scene);
+    if (!parse_number(*value, fps) || !(fps >= 0.0 && fps <= 1e6)) return false;
+    if (fps == 0.0 && !script) return false;
     document.fps = static_cast<float>(fps);
   } else {
     return false;
   }
   return true;
+}
+
+/// Takes ",key=value,key=value" in. False: it says something that is not known.
+bool read_options(std::string_view options, SceneDocument& document) {
+  while (!options.empty()) {
+    if (options.front() != ',') return false;
+    options.remove_prefix(1);
+    const size_t end = std::min(options.find(','), options.size());
+    if (!read_option(options.substr(0, end), document)) return false;
+    options.remove_prefix(end);
+  }
+  return true;
+}
+
+/// The document of a script, which lies beside it; `name` is without its end.
+std::optional<SceneDocument> script_document_of(std::string_view name) {
+  for (size_t comma = name.find(','); comma < name.size(); comma = name.find(',', comma + 1)) {
+    SceneDocument document;
+    document.scene = name.substr(0, comma);
+    document.fps = 0.0F;
+    if (is_script_file(document.scene) && read_options(name.substr(comma), document)) {
+      return document;
+    }
+  }
+  return std::nullopt;
 }
 
 }  // namespace
@@ -87,18 +122,39 @@ bool is_scene_file(std::string_view name) {
   return std::find(kExtensions.begin(), kExtensions.end(), extension) != kExtensions.end();
 }
 
+bool is_script_file(std::string_view name) { return file_extension(std::string(name)) == kScript; }
+
+bool is_setting_name(std::string_view name) {
+  const auto is_letter = [](char c) {
+    return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_';
+  };
+  return !name.empty() && name.size() <= kLongestSetting &&
+         std::isdigit(static_cast<unsigned char>(name.front())) == 0 &&
+         std::all_of(name.begin(), name.end(), is_letter);
+}
+
 std::string reference_of(const SceneDocument& document) {
-  std::string name = fmt::format("{}{}/{}", document.scene, kMadeFolder, kName);
+  const bool script = is_script_file(document.scene);
+  std::string name = document.scene;
+  if (!script) name += fmt::format("{}/{}", kMadeFolder, kName);
   if (!document.prefix.empty()) name += ",prefix=" + escaped(document.prefix);
-  name += fmt::format(",fps={}", document.fps);
+  if (document.fps > 0.0F || script) name += fmt::format(",fps={}", document.fps);
   if (!document.animation.empty()) name += ",animation=" + escaped(document.animation);
   if (document.loop) name += ",loop=true";
+  if (!document.frames.empty()) name += ",frames=" + escaped(document.frames);
+  for (const auto& [key, value] : document.set) {
+    name += fmt::format(",{}{}={}", kSetting, key, escaped(value));
+  }
   return name + std::string(kEnd);
 }
 
 std::optional<SceneDocument> document_of(std::string_view reference) {
+  if (!reference.ends_with(kEnd)) return std::nullopt;
+  if (auto script = script_document_of(reference.substr(0, reference.size() - kEnd.size()))) {
+    return script;
+  }
   const size_t slash = reference.rfind('/');
-  if (slash == std::string_view::npos || !reference.ends_with(kEnd)) return std::nullopt;
+  if (slash == std::string_view::npos) return std::nullopt;
   const std::string_view folder = reference.substr(0, slash);
   std::string_view name = reference.substr(slash + 1);
   name.remove_suffix(kEnd.size());
@@ -106,13 +162,7 @@ std::optional<SceneDocument> document_of(std::string_view reference) {
   SceneDocument document;
   document.scene = folder.substr(0, folder.size() - kMadeFolder.size());
   name.remove_prefix(kName.size());
-  while (!name.empty()) {
-    if (name.front() != ',') return std::nullopt;
-    name.remove_prefix(1);
-    const size_t end = std::min(name.find(','), name.size());
-    if (!read_option(name.substr(0, end), document)) return std::nullopt;
-    name.remove_prefix(end);
-  }
+  if (!read_options(name, document)) return std::nullopt;
   return document;
 }
 

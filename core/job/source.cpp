@@ -18,7 +18,8 @@ constexpr size_t kMaxDiagnostics = 100;
 std::string Diagnostic::to_string() const {
   std::string text = where.file;
   if (where.line > 0) {
-    text += ":" + std::to_string(where.line) + ":" + std::to_string(where.column);
+    text += ":" + std::to_string(where.line);
+    if (where.column > 0) text += ":" + std::to_string(where.column);
   }
   return text.empty() ? message : text + ": " + message;
 }
@@ -26,8 +27,8 @@ std::string Diagnostic::to_string() const {
 void Diagnostics::add(const SourceLocation& place, std::string message) {
   if (full()) return;
   SourceLocation where = place;
-  // What importers make of a scene has lines, but nobody sees them.
-  if (is_scene_file(where.file)) where = {where.file, 0, 0};
+  // What importers make of a scene has lines, but nobody sees them. Those of scripts are told.
+  if (is_scene_file(where.file) && !is_script_file(where.file)) where = {where.file, 0, 0};
   if (list_.size() == kMaxDiagnostics) {
     message = "too many complaints: only the first " + std::to_string(kMaxDiagnostics) +
               " are listed, mend those and look again";

@@ -11,10 +11,10 @@ namespace hyades::core {
 struct SourceLocation {
   std::string file;
   int line = 0;    ///< from 1; 0 = unknown
-  int column = 0;  ///< from 1
+  int column = 0;  ///< from 1; 0 = unknown
 };
 
-/// One complaint: "file:line:column: what, and what was expected".
+/// One complaint: "file:line:column: what, and what was expected"; of scripts without the column.
 struct Diagnostic {
   SourceLocation where;
   std::string message;
@@ -25,7 +25,8 @@ struct Diagnostic {
 /// (and says so) after 100.
 class Diagnostics {
  public:
-  /// Of scenes of other tools, which a job reads as documents made of them, only the file is told.
+  /// Of scenes of other tools, which a job reads as documents made of them, only the file is told;
+  /// of scripts the line too.
   void add(const SourceLocation& place, std::string message);
   bool empty() const { return list_.empty(); }
   bool full() const;  ///< further complaints would be dropped

@@ -10,6 +10,7 @@
 #include <unordered_map>
 #include <utility>
 
+#include "core/job/made_lines.h"
 #include "core/job/yaml_guard.h"
 
 namespace hyades::core {
@@ -25,8 +26,8 @@ struct Refusal {
 /// Builds the tree from yaml-cpp's events, so that every limit holds while the text is being read.
 class TreeBuilder : public YAML::EventHandler {
  public:
-  TreeBuilder(const std::string& file, Diagnostics& diagnostics)
-      : file_(std::make_shared<const std::string>(file)), diagnostics_(diagnostics) {}
+  TreeBuilder(const MadeLines& lines, Diagnostics& diagnostics)
+      : lines_(lines), diagnostics_(diagnostics) {}
 
   YamlPtr root() const { return root_; }
   bool seen_content() const { return root_ != nullptr; }
@@ -92,7 +93,7 @@ class TreeBuilder : public YAML::EventHandler {
     std::unordered_map<std::string, int> keys;  ///< and the lines they stand on
   };
 
-  YamlPlace at(const YAML::Mark& mark) const { return {file_, mark.line + 1, mark.column + 1}; }
+  YamlPlace at(const YAML::Mark& mark) const { return lines_.at(mark.line + 1, mark.column + 1); }
 
   void count(uint64_t weight, const YAML::Mark& mark) {
     nodes_ += weight;
@@ -193,7 +194,7 @@ class TreeBuilder : public YAML::EventHandler {
     }
   }
 
-  std::shared_ptr<const std::string> file_;
+  const MadeLines& lines_;
   Diagnostics& diagnostics_;
   YamlPtr root_;
   std::vector<Open> stack_;
@@ -212,7 +213,8 @@ const YamlEntry* YamlNode::find(std::string_view key) const {
 YamlPtr parse_yaml(std::string_view text, const std::string& file, Diagnostics& diagnostics) {
   if (!check_yaml_text(text, file, diagnostics)) return nullptr;
   std::istringstream in{std::string(text)};
-  TreeBuilder builder(file, diagnostics);
+  const MadeLines lines(text, file);
+  TreeBuilder builder(lines, diagnostics);
   try {
     YAML::Parser parser(in);
     if (!parser.HandleNextDocument(builder) || !builder.seen_content()) {
@@ -221,7 +223,7 @@ YamlPtr parse_yaml(std::string_view text, const std::string& file, Diagnostics& 
       return empty;
     }
     YamlPtr root = builder.root();
-    TreeBuilder second(file, diagnostics);
+    TreeBuilder second(lines, diagnostics);
     if (parser.HandleNextDocument(second)) {
       const SourceLocation top{file, 1, 1};
       diagnostics.add(second.seen_content() ? SourceLocation(second.root()->where) : top,

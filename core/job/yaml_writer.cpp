@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "core/job/made_lines.h"
 #include "core/job/read_values.h"
 
 namespace hyades::core {
@@ -80,10 +81,14 @@ bool in_one_line(const YamlNode& node, size_t most, std::string& out) {
 
 class Writer {
  public:
+  /// `script`: see write_yaml_of_script(); null: no marks.
+  explicit Writer(const std::string* script = nullptr) : script_(script) {}
+
   std::string text;
 
   void map(const YamlNode& node, size_t depth) {
     for (const YamlEntry& entry : node.map) {
+      mark(entry.value->where);
       text.append(2 * depth, ' ');
       text += key_text(entry.key) + ":";
       value(*entry.value, depth);
@@ -91,8 +96,19 @@ class Writer {
   }
 
  private:
+  /// Says where what follows was made, unless that was said last.
+  void mark(const YamlPlace& where) {
+    if (script_ == nullptr || where.line == 0) return;
+    if (where.line == marked_.line && where.file == marked_.file) return;
+    marked_ = where;
+    text += std::string(kLineMark) + std::to_string(where.line);
+    if (where.file != nullptr && *where.file != *script_) text += ' ' + *where.file;
+    text += '\n';
+  }
+
   void list(const YamlNode& node, size_t depth) {
     for (const YamlPtr& item : node.list) {
+      mark(item->where);
       text.append(2 * depth, ' ');
       text += "-";
       value(*item, depth);
@@ -155,12 +171,21 @@ class Writer {
     }
     text += "]\n";
   }
+
+  const std::string* script_;
+  YamlPlace marked_;
 };
 
 }  // namespace
 
 std::string write_yaml(const YamlNode& root) {
   Writer writer;
+  writer.map(root, 0);
+  return std::move(writer.text);
+}
+
+std::string write_yaml_of_script(const YamlNode& root, const std::string& script) {
+  Writer writer(&script);
   writer.map(root, 0);
   return std::move(writer.text);
 }

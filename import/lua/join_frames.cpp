@@ -1,0 +1,175 @@
+#include "import/lua/join_frames.h"
+
+#include <algorithm>
+#include <cstddef>
+#include <memory>
+#include <string>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "core/job/read_values.h"
+#include "core/job/yaml_build.h"
+
+namespace hyades::core::lua {
+
+namespace {
+
+using Kind = YamlNode::Kind;
+using Nodes = std::vector<const YamlPtr*>;  ///< of one path, by frame
+
+bool is_number(const YamlNode& node) {
+  double number = 0.0;
+  return node.kind == Kind::scalar && !node.quoted && parse_number(node.scalar, number);
+}
+
+bool is_scalar(const YamlPtr& node) { return node->kind == Kind::scalar; }
+
+/// Numbers and vectors, which can change from frame to frame.
+bool is_numeric(const YamlNode& node) {
+  if (node.kind != Kind::list) return is_number(node);
+  return !node.list.empty() && std::all_of(node.list.begin(), node.list.end(),
+                                           [](const YamlPtr& item) { return is_number(*item); });
+}
+
+bool is_value(const YamlNode& node) {
+  const bool color = node.kind == Kind::scalar && looks_like_color(node.scalar);
+  return color || is_numeric(node);
+}
+
+class Joiner {
+ public:
+  explicit Joiner(const std::vector<FrameTree>& trees) : trees_(trees) {}
+
+  YamlPtr joined(const Nodes& nodes) {
+    const YamlNode& first = **nodes.front();
+    const auto all = [&](const auto& holds) {
+      return std::all_of(nodes.begin(), nodes.end(),
+                         [&](const YamlPtr* node) { return holds(**node); });
+    };
+    if (all([&](const YamlNode& n) { return n.kind == Kind::map; })) return maps(nodes);
+    const bool lists = all([&](const YamlNode& n) {
+      return n.kind == Kind::list && n.list.size() == first.list.size();
+    });
+    if (lists && !std::all_of(first.list.begin(), first.list.end(), is_scalar)) {
+      return list(nodes);
+    }
+    const bool same = all([&](const YamlNode& n) { return equal(n, first); });
+    if (same) return *nodes.front();
+    if (all([](const YamlNode& n) { return is_value(n); })) return keyed(nodes);
+    return refuse(nodes);
+  }
+
+  const Error& error() const { return error_; }
+
+ private:
+  /// Of scalars and lists of them.
+  static bool equal(const YamlNode& a, const YamlNode& b) {
+    return a.kind == b.kind && a.scalar == b.scalar && a.quoted == b.quoted &&
+           std::equal(
+               a.list.begin(), a.list.end(), b.list.begin(), b.list.end(),
+               [](const YamlPtr& x, const YamlPtr& y) { return equal(*x, *y); }) &&
+           a.map.empty() && b.map.empty();
+  }
+
+  YamlPtr list(const Nodes& nodes) {
+    auto result = std::make_shared<YamlNode>(**nodes.front());
+    const size_t cut = path_.size();
+    for (size_t i = 0; i < result->list.size(); ++i) {
+      path_ += fmt::format("[{}]", i + 1);
+      Nodes items;
+      for (const YamlPtr* node : nodes) items.push_back(&(*node)->list[i]);
+      result->list[i] = joined(items);
+      if (result->list[i] == nullptr) return nullptr;
+      path_.resize(cut);
+    }
+    return result;
+  }
+
+  /// Their keys are sorted, so that equal ones stand at equal places.
+  YamlPtr maps(const Nodes& nodes) {
+    auto result = std::make_shared<YamlNode>(**nodes.front());
+    const size_t cut = path_.size();
+    for (size_t f = 1; f < nodes.size(); ++f) {
+      if (!check_keys(**nodes.front(), **nodes[f], trees_[f].frame)) return nullptr;
+    }
+    for (size_t i = 0; i < result->map.size(); ++i) {
+      path_ += (path_.empty() ? "" : ".") + result->map[i].key;
+      Nodes items;
+      for (const YamlPtr* node : nodes) items.push_back(&(*node)->map[i].value);
+      result->map[i].value = joined(items);
+      if (result->map[i].value == nullptr) return nullptr;
+      path_.resize(cut);
+    }
+    return result;
+  }
+
+  bool check_keys(const YamlNode& a, const YamlNode& b, int32_t frame) {
+    const auto missing = [](const YamlNode& from, const YamlNode& in) -> const YamlEntry* {
+      for (const YamlEntry& entry : from.map) {
+        if (in.find(entry.key) == nullptr) return &entry;
+      }
+      return nullptr;
+    };
+    const auto same_key = [](const YamlEntry& x, const YamlEntry& y) { return x.key == y.key; };
+    if (std::equal(a.map.begin(), a.map.end(), b.map.begin(), b.map.end(), same_key)) return true;
+    const YamlEntry* const lost = missing(a, b);
+    const YamlEntry* const found = lost != nullptr ? lost : missing(b, a);
+    const int32_t with = lost != nullptr ? trees_.front().frame : frame;
+    const int32_t without = lost != nullptr ? frame : trees_.front().frame;
+    complain(found->value->where, (path_.empty() ? "" : path_ + ".") + found->key,
+             fmt::format("is there in frame {} and not in frame {}, expected the same things in "
+                         "every frame: let what is not to be seen be elsewhere",
+                         with, without));
+    return false;
+  }
+
+  YamlPtr keyed(const Nodes& nodes) const {
+    YamlMap keys;
+    bool numbers = true;
+    for (size_t f = 0; f < nodes.size(); ++f) {
+      keys.put(std::to_string(trees_[f].frame), *nodes[f]);
+      numbers = numbers && is_numeric(**nodes[f]) &&
+                (*nodes[f])->list.size() == (*nodes[0])->list.size();
+    }
+    auto node = std::make_shared<YamlNode>(
+        *YamlMap{{"keys", keys.node()}, {"ease", yaml_word(numbers ? "linear" : "step")}}.node());
+    node->where = (*nodes.front())->where;
+    return node;
+  }
+
+  YamlPtr refuse(const Nodes& nodes) {
+    const YamlNode& first = **nodes.front();
+    size_t f = 1;
+    while (f + 1 < nodes.size() && equal(**nodes[f], first)) ++f;
+    complain(first.where, path_,
+             fmt::format("is {} in frame {} and {} in frame {}, expected the same in every frame: "
+                         "only numbers, vectors and colours may change",
+                         describe(first), trees_.front().frame, describe(**nodes[f]),
+                         trees_[f].frame));
+    return nullptr;
+  }
+
+  void complain(const YamlPlace& where, const std::string& path, const std::string& what) {
+    const std::string line =
+        where.line > 0 ? fmt::format("{}:{}: ", *where.file, where.line) : std::string();
+    error_ = {line + path + " " + what};
+  }
+
+  const std::vector<FrameTree>& trees_;
+  std::string path_;
+  Error error_;
+};
+
+}  // namespace
+
+Result<YamlPtr> join_frames(const std::vector<FrameTree>& trees) {
+  Nodes roots;
+  for (const FrameTree& tree : trees) roots.push_back(&tree.tree);
+  Joiner joiner(trees);
+  YamlPtr tree = joiner.joined(roots);
+  if (tree == nullptr) return joiner.error();
+  return tree;
+}
+
+}  // namespace hyades::core::lua

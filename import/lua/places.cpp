@@ -1,0 +1,130 @@
+#include "import/lua/places.h"
+
+#include <array>
+#include <cmath>
+#include <string_view>
+
+#include <glm/gtc/matrix_transform.hpp>
+
+#include "core/base/elementary.h"
+#include "import/lua/machine.h"
+#include "import/mass_copies.h"
+
+namespace hyades::core::lua {
+
+namespace {
+
+constexpr std::array<std::string_view, 5> kKeys = {"at", "scale", "rotate_x", "rotate_y",
+                                                   "rotate_z"};
+constexpr float kRadians = 0.017453292519943295F;
+
+/// One table of the list, on top of the stack.
+class Copy {
+ public:
+  Copy(lua_State* state, lua_Integer index) : state_(state), index_(index) {}
+
+  Mat4 matrix() const {
+    check_keys();
+    Mat4 m(1.0F);
+    const Vec3 scale = vector("scale", Vec3(1.0F));
+    for (int i = 0; i < 3; ++i) m[i] *= scale[i];
+    for (int axis = 0; axis < 3; ++axis) turn(m, axis);
+    m[3] = Vec4(vector("at", Vec3(0.0F)), 1.0F);
+    return m;
+  }
+
+ private:
+  void check_keys() const {
+    lua_pushnil(state_);
+    while (lua_next(state_, -2) != 0) {
+      lua_pop(state_, 1);
+      const bool text = lua_type(state_, -1) == LUA_TSTRING;
+      const std::string_view key = text ? lua_tostring(state_, -1) : luaL_typename(state_, -1);
+      bool known = false;
+      for (const std::string_view one : kKeys) known = known || key == one;
+      if (!known || !text) {
+        luaL_error(state_, "copy %I has the key '%s', expected at, scale, rotate_x, rotate_y or "
+                           "rotate_z",
+                   index_, key.data());
+      }
+    }
+  }
+
+  float number(const char* key) const {
+    if (lua_type(state_, -1) != LUA_TNUMBER || !std::isfinite(lua_tonumber(state_, -1))) {
+      luaL_error(state_, "%s of copy %I is a %s, expected a finite number", key, index_,
+                 luaL_typename(state_, -1));
+    }
+    const auto value = static_cast<float>(lua_tonumber(state_, -1));
+    lua_pop(state_, 1);
+    return value;
+  }
+
+  Vec3 vector(const char* key, const Vec3& otherwise) const {
+    const int type = lua_getfield(state_, -1, key);
+    if (type == LUA_TNIL) {
+      lua_pop(state_, 1);
+      return otherwise;
+    }
+    if (type == LUA_TNUMBER && std::string_view(key) == "scale") return Vec3(number(key));
+    if (type != LUA_TTABLE || lua_rawlen(state_, -1) != 3) {
+      luaL_error(state_, "%s of copy %I is a %s, expected {x, y, z}", key, index_,
+                 type == LUA_TTABLE ? "table without three numbers" : luaL_typename(state_, -1));
+    }
+    Vec3 value;
+    for (int i = 0; i < 3; ++i) {
+      lua_rawgeti(state_, -1, i + 1);
+      value[i] = number(key);
+    }
+    lua_pop(state_, 1);
+    return value;
+  }
+
+  /// Turns `m` about x (0), y (1) or z (2), as the steps of a job's transform do.
+  void turn(Mat4& m, int axis) const {
+    const char* const key = kKeys[static_cast<size_t>(axis) + 2].data();
+    if (lua_getfield(state_, -1, key) == LUA_TNIL) {
+      lua_pop(state_, 1);
+      return;
+    }
+    const SinCos angle = sin_cos(kRadians * number(key));
+    const int a = (axis + 1) % 3;
+    const int b = (axis + 2) % 3;
+    for (int column = 0; column < 3; ++column) {
+      const Vec4 old = m[column];
+      m[column][a] = angle.cos * old[a] - angle.sin * old[b];
+      m[column][b] = angle.sin * old[a] + angle.cos * old[b];
+    }
+  }
+
+  lua_State* state_;
+  lua_Integer index_;
+};
+
+}  // namespace
+
+std::vector<PlaceMatrix> read_copies(lua_State* state, int at) {
+  luaL_checktype(state, at, LUA_TTABLE);
+  const auto count = static_cast<lua_Integer>(lua_rawlen(state, at));
+  if (count == 0) luaL_error(state, "a list without copies, expected one at least");
+  if (count > static_cast<lua_Integer>(kMostCopies)) {
+    luaL_error(state, "%I copies, expected at most %I", count,
+               static_cast<lua_Integer>(kMostCopies));
+  }
+  Machine::of(state).spend(16 * static_cast<uint64_t>(count));
+  std::vector<PlaceMatrix> places;
+  places.reserve(static_cast<size_t>(count));
+  for (lua_Integer i = 1; i <= count; ++i) {
+    if (lua_rawgeti(state, at, i) != LUA_TTABLE) {
+      luaL_error(state, "copy %I is a %s, expected a table such as {at = {1, 0, 2}}", i,
+                 luaL_typename(state, -1));
+    }
+    const Mat4 matrix = Copy(state, i).matrix();
+    if (!can_be_copied(matrix)) luaL_error(state, "copy %I is flat or too small to be seen", i);
+    places.emplace_back(matrix);
+    lua_pop(state, 1);
+  }
+  return places;
+}
+
+}  // namespace hyades::core::lua

@@ -1,0 +1,203 @@
+#include "import/lua/script_run.h"
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <filesystem>
+#include <span>
+#include <string_view>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "core/base/hash.h"
+#include "core/base/text.h"
+#include "core/geometry/read_places.h"
+#include "import/lua/libraries.h"
+#include "import/lua/places.h"
+#include "import/lua/random.h"
+#include "import/lua/setting.h"
+#include "import/lua/tree.h"
+#include "import/within_folder.h"
+
+namespace hyades::core::lua {
+
+namespace {
+
+constexpr size_t kMaxDepth = 16;
+constexpr size_t kMaxScript = size_t{4} << 20;
+
+class Run {
+ public:
+  explicit Run(const ScriptRequest& request) : request_(request), machine_(request.limits) {}
+
+  Result<ScriptResult> run() {
+    lua_State* const state = machine_.state();
+    lua_pushcfunction(state, &Run::prepare);
+    lua_pushlightuserdata(state, this);
+    if (auto ready = machine_.call(1, 0); !ready) return ready.error();
+    const std::string name = std::filesystem::path(request_.script).filename().string();
+    if (auto loaded = load(name); !loaded) return loaded.error();
+    if (auto done = machine_.call(0, 1); !done) return done.error();
+    if (auto known = check_settings(); !known) return known.error();
+    if (!lua_istable(state, -1)) {
+      return Error{fmt::format("{}: the script returns {}, expected a table of a job's sections: "
+                               "return {{objects = {{...}}}}",
+                               request_.script,
+                               lua_isnil(state, -1) ? "nothing" : luaL_typename(state, -1))};
+    }
+    auto tree = tree_of(state, -1);
+    if (!tree) return told_beside(request_.script, tree.error());
+    result_.tree = *tree;
+    return std::move(result_);
+  }
+
+ private:
+  /// Compiles a file of the script's folder, and leaves the function on the stack.
+  Status load(const std::string& name) {
+    const std::string shown = resolve_reference(name, request_.script);
+    const auto bytes = request_.files.open(name, request_.script);
+    if (!bytes) return bytes.error();
+    if (bytes->size() > kMaxScript) {
+      return Error{fmt::format("{}: a script of {}, expected at most {}", shown,
+                               format_bytes(bytes->size()), format_bytes(kMaxScript))};
+    }
+    if (machine_.load({bytes->chars(), bytes->size()}, shown, name)) return {};
+    const Error error{lua_tostring(machine_.state(), -1)};
+    lua_pop(machine_.state(), 1);
+    return error;
+  }
+
+  Status check_settings() const {
+    std::vector<std::string> names;
+    std::string known;
+    for (const Parameter& parameter : result_.parameters) {
+      names.push_back(parameter.name);
+      known += fmt::format("\n  {} = {}", parameter.name, parameter.usual);
+      if (!parameter.help.empty()) known += "  (" + parameter.help + ")";
+    }
+    for (const auto& [name, value] : request_.set) {
+      if (std::find(names.begin(), names.end(), name) != names.end()) continue;
+      if (names.empty()) {
+        return Error{fmt::format("{}: there is no parameter '{}': the script has none",
+                                 request_.script, name)};
+      }
+      return Error{fmt::format("{}: there is no parameter '{}'{}; the script has{}",
+                               request_.script, name, did_you_mean(name, names), known)};
+    }
+    return {};
+  }
+
+  static Run& of(lua_State* state) {
+    return *static_cast<Run*>(lua_touserdata(state, lua_upvalueindex(1)));
+  }
+
+  /// Opens the libraries and the functions below.
+  static int prepare(lua_State* state) {
+    void* const self = lua_touserdata(state, 1);
+    open_libraries(state);
+    lua_pushglobaltable(state);
+    constexpr std::array<luaL_Reg, 7> kCalls = {{{"param", param},
+                                                 {"frame", frame},
+                                                 {"time", time},
+                                                 {"include", include},
+                                                 {"places", places},
+                                                 {"random", make_random},
+                                                 {nullptr, nullptr}}};
+    lua_pushlightuserdata(state, self);
+    luaL_setfuncs(state, kCalls.data(), 1);
+    return 0;
+  }
+
+  /// param(name, default, help).
+  static int param(lua_State* state) {
+    Run& run = of(state);
+    const Setting setting = read_setting(state, run.request_.set);
+    const auto same = std::find_if(
+        run.result_.parameters.begin(), run.result_.parameters.end(),
+        [&](const Parameter& parameter) { return parameter.name == setting.name; });
+    if (same != run.result_.parameters.end() && same->usual != setting.usual) {
+      return luaL_error(state, "parameter %s has the default %s here and %s elsewhere",
+                        setting.name.c_str(), setting.usual.c_str(), same->usual.c_str());
+    }
+    if (same == run.result_.parameters.end()) {
+      run.result_.parameters.push_back({setting.name, setting.usual, setting.help});
+    }
+    return 1;
+  }
+
+  static int frame(lua_State* state) {
+    Run& run = of(state);
+    run.result_.asks_frame = true;
+    lua_pushinteger(state, run.request_.frame);
+    return 1;
+  }
+
+  static int time(lua_State* state) {
+    Run& run = of(state);
+    run.result_.asks_frame = true;
+    lua_pushnumber(state, (run.request_.frame - 1) / run.request_.fps);
+    return 1;
+  }
+
+  /// include(file): what another script of the folder returns, which runs once.
+  static int include(lua_State* state) {
+    Run& run = of(state);
+    const auto name = within_folder(luaL_checkstring(state, 1));
+    if (!name) return luaL_error(state, "include: %s", name.error().message.c_str());
+    if (!is_script_file(*name)) {
+      return luaL_error(state, "include: '%s', expected a script (.lua)", name->c_str());
+    }
+    if (lua_getfield(state, LUA_REGISTRYINDEX, name->c_str()) == LUA_TTABLE) {
+      lua_rawgeti(state, -1, 1);
+      return 1;
+    }
+    const bool open = std::find(run.open_.begin(), run.open_.end(), *name) != run.open_.end();
+    if (open || run.open_.size() >= kMaxDepth) {
+      return luaL_error(state, open ? "include: '%s' includes itself in the end"
+                                    : "include: '%s' lies too deep, expected at most 16 levels",
+                        name->c_str());
+    }
+    if (auto loaded = run.load(*name); !loaded) {
+      return luaL_error(state, "include: %s", loaded.error().message.c_str());
+    }
+    run.open_.push_back(*name);
+    lua_call(state, 0, 1);
+    run.open_.pop_back();
+    lua_createtable(state, 1, 0);
+    lua_pushvalue(state, -2);
+    lua_rawseti(state, -2, 1);
+    lua_setfield(state, LUA_REGISTRYINDEX, name->c_str());
+    return 1;
+  }
+
+  /// places(list): the name of a file with these copies, for an instance's `places`.
+  static int places(lua_State* state) {
+    Run& run = of(state);
+    const Bytes file = places_bytes(read_copies(state, 1));
+    const Sha256 hash = sha256({file.chars(), file.size()});
+    const std::string name = "places-" + to_hex(std::span(hash).first(8)) + ".ply";
+    run.result_.made.emplace(name, file);
+    const std::string reference = run.request_.made + name;
+    lua_pushlstring(state, reference.data(), reference.size());
+    return 1;
+  }
+
+  const ScriptRequest& request_;
+  ScriptResult result_;
+  std::vector<std::string> open_;  ///< included files that are running
+  Machine machine_;
+};
+
+}  // namespace
+
+Error told_beside(const std::string& script, const Error& error) {
+  const size_t folder = script.rfind('/');
+  const bool has_place = error.message.find(".lua:") < error.message.find(' ');
+  if (!has_place) return error.in(script);
+  return folder == std::string::npos ? error : Error{script.substr(0, folder + 1) + error.message};
+}
+
+Result<ScriptResult> run_script(const ScriptRequest& request) { return Run(request).run(); }
+
+}  // namespace hyades::core::lua

@@ -1,0 +1,113 @@
+#include <cmath>
+#include <cstdint>
+#include <string_view>
+
+#include "import/lua/libraries.h"
+#include "import/lua/machine.h"
+
+namespace hyades::core::lua {
+
+namespace {
+
+/// Most steps that matching a pattern may take in the worst case: some seconds.
+constexpr double kMostMatching = 1e9;
+
+std::string_view text_at(lua_State* state, int at) {
+  size_t size = 0;
+  const char* const text = luaL_checklstring(state, at, &size);
+  return {text, size};
+}
+
+/// How often a pattern may try a place of a text of `size` bytes: each `*`, `+` and `-` may end
+/// anywhere, each `?` in two places. What stands in sets counts as well, which does no harm.
+double worst_matching(std::string_view pattern, double size) {
+  double steps = pattern.starts_with('^') ? 1.0 : size + 1.0;
+  for (size_t i = 0; i < pattern.size(); ++i) {
+    const char c = pattern[i];
+    if (c == '%') {
+      if (++i < pattern.size() && (pattern[i] == 'b' || pattern[i] == 'f')) steps *= size + 1.0;
+    } else if (c == '*' || c == '+' || c == '-') {
+      steps *= size + 1.0;
+    } else if (c == '?') {
+      steps *= 2.0;
+    }
+  }
+  return steps;
+}
+
+/// Before `find`, `match`, `gmatch` and `gsub`: Lua's matcher tries all ways to match, counts none
+/// of them and cannot be stopped.
+int guard_matching(lua_State* state) {
+  const std::string_view text = text_at(state, 1);
+  const std::string_view pattern = text_at(state, 2);
+  const double steps = worst_matching(pattern, static_cast<double>(text.size()));
+  if (!(steps <= kMostMatching)) {
+    return luaL_error(state,
+                      "this pattern may take too long on a text of %d bytes, expected fewer *, +, "
+                      "- and ? in it, ^ before it, or a shorter text",
+                      static_cast<int>(text.size()));
+  }
+  Machine::of(state).spend(text.size());
+  return call_original(state);
+}
+
+int guard_find(lua_State* state) {
+  if (lua_toboolean(state, 4) == 0) return guard_matching(state);
+  Machine::of(state).spend(text_at(state, 1).size() + text_at(state, 2).size());
+  return call_original(state);
+}
+
+int guard_repeat(lua_State* state) {
+  const lua_Integer count = luaL_checkinteger(state, 2);
+  if (count > 0) Machine::of(state).spend(static_cast<uint64_t>(count));
+  return call_original(state);
+}
+
+/// Before what walks through a text.
+int guard_walk(lua_State* state) {
+  Machine::of(state).spend(text_at(state, 1).size());
+  return call_original(state);
+}
+
+/// No addresses: neither by %p nor by the text of a table.
+int guard_format(lua_State* state) {
+  const std::string_view format = text_at(state, 1);
+  for (size_t i = format.find('%'); i < format.size(); i = format.find('%', i + 1)) {
+    i = format.find_first_not_of("-+ #0123456789.", i + 1);
+    if (i < format.size() && format[i] == 'p') {
+      return luaL_error(state, "%%p in a format, expected none: addresses differ from run to run");
+    }
+    if (i == std::string_view::npos) break;
+  }
+  for (int i = 2; i <= lua_gettop(state); ++i) {
+    const int type = lua_type(state, i);
+    if (type == LUA_TNIL || type == LUA_TBOOLEAN || type == LUA_TNUMBER || type == LUA_TSTRING) {
+      continue;
+    }
+    push_text(state, i);
+    lua_replace(state, i);
+  }
+  return call_original(state);
+}
+
+}  // namespace
+
+void open_text(lua_State* state) {
+  luaL_requiref(state, LUA_STRLIBNAME, luaopen_string, 1);
+  lua_pushnil(state);
+  lua_setfield(state, -2, "dump");
+  guard_function(state, "find", guard_find);
+  for (const char* const name : {"match", "gmatch", "gsub"}) {
+    guard_function(state, name, guard_matching);
+  }
+  guard_function(state, "rep", guard_repeat);
+  guard_function(state, "format", guard_format);
+  lua_pop(state, 1);
+  luaL_requiref(state, LUA_UTF8LIBNAME, luaopen_utf8, 1);
+  for (const char* const name : {"len", "offset", "codepoint"}) {
+    guard_function(state, name, guard_walk);
+  }
+  lua_pop(state, 1);
+}
+
+}  // namespace hyades::core::lua

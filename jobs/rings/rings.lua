@@ -1,0 +1,50 @@
+-- Rings within rings, each turned a little further than the one around it, and a bright ball in their middle; a lamp behind them
+-- throws their shadows into the fog.
+local count = param("rings", 9, "how many rings")
+local twist = param("twist", 17, "degrees that each ring is turned against the one around it")
+
+local center = {0, 2.3, 0}
+local objects = {
+  ground = {shape = "rectangle", size = {80, 80}, material = "stone"},
+  core = {shape = "sphere", radius = 0.26, at = center, material = "gold"},
+}
+for i = 1, count do
+  -- A ring is a row of short rods around a circle.
+  local radius = 0.42 + 0.17 * i
+  local rods, parts = 48, {}
+  for k = 1, rods do
+    local angle = 360 * k / rods
+    parts[string.format("rod_%02d", k)] = {
+      shape = "box",
+      size = {2.02 * radius * math.tan(math.pi / rods), 0.07, 0.035},
+      transform = {{translate = {0, 0, radius}}, {rotate_y = angle}},
+    }
+  end
+  objects[string.format("ring_%d", i)] = {
+    group = {objects = parts},
+    material = i % 3 == 0 and "gold" or "bronze",
+    transform = {{rotate_x = 90}, {rotate_y = twist * (count - i)}, {rotate_x = 9 * (count - i)}},
+    at = center,
+  }
+end
+
+return {
+  name = "rings",
+  film = {size = {640, 400}},
+  sampling = {samples = 512, seed = 5},
+  integrator = {type = "bdpt", max_depth = 3},
+  camera = {look_from = {2.2, 1.5, 7.2}, look_at = {-0.1, 2.05, 0}, fov = 36},
+  media = {fog = {scattering = {0.036, 0.039, 0.044}, absorption = 0.003, g = 0.45}},
+  atmosphere = "fog",
+  materials = {
+    stone = {type = "lambert", color = {0.18, 0.17, 0.16}},
+    bronze = {type = "conductor", metal = "brass", roughness = 0.4},
+    gold = {type = "conductor", metal = "gold", roughness = 0.2},
+  },
+  objects = objects,
+  lights = {
+    beam = {type = "spot", at = {-2.6, 5.2, -5.5}, look_at = center, angle = 19, blend = 0.15, power = 7000, color = "4300K"},
+    sky = {type = "point", at = {3.5, 5, 6}, power = 130, color = {0.5, 0.65, 1}},
+  },
+  outputs = {{file = "rings.exr"}, {file = "rings.png", tone_map = "filmic", exposure = 0.8}},
+}

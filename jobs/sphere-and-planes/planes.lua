@@ -1,0 +1,46 @@
+-- A ball of chrome among coloured planes, which turn around it like the pages of a book: all that moves is computed from time().
+local count = param("planes", 24, "how many planes")
+
+-- The colour of a hue from 0 to 1 (HSV with full value).
+local function hue(h, saturation)
+  local function channel(shift)
+    local x = math.abs((h + shift) % 1 * 6 - 3) - 1
+    return 1 - saturation * (1 - math.max(0, math.min(1, x)))
+  end
+  return {0.85 * channel(0), 0.85 * channel(2 / 3), 0.85 * channel(1 / 3)}
+end
+
+local materials = {
+  chrome = {type = "conductor", metal = "chromium", roughness = 0.02},
+  floor = {type = "glossy", color = {0.55, 0.54, 0.52}, reflectiveness = 0.1, glossiness = 0.8},
+}
+local objects = {
+  floor = {shape = "rectangle", size = {60, 60}, material = "floor"},
+  ball = {shape = "sphere", radius = 1, at = {0, 1.35 + 0.12 * math.sin(math.pi * time()), 0}, material = "chrome"},
+  lamp = {shape = "rectangle", size = {5, 5}, transform = {{rotate_x = 180}}, at = {-2, 8, 3}, emit = {color = "5200K", power = 900}},
+}
+for i = 1, count do
+  local name = string.format("plane_%02d", i)
+  local turn = 360 * i / count + 15 * time()
+  materials[name] = {type = "lambert", color = hue(i / count, 0.75)}
+  objects[name] = {
+    shape = "box",
+    size = {1.5, 1.5 + 0.5 * math.sin(4 * math.pi * i / count), 0.03},
+    material = name,
+    transform = {{rotate_y = 24}, {translate = {2.6, 0, 0}}, {rotate_y = turn}},
+    at = {0, 1.2, 0},
+  }
+end
+
+return {
+  name = "sphere-and-planes",
+  frames = {range = "1-96", fps = 24, shutter = 0.5},
+  film = {size = {720, 400}},
+  sampling = {samples = 256, seed = 4},
+  integrator = {type = "path", max_depth = 8},
+  camera = {look_from = {0, 3.6, 9}, look_at = {0, 1.1, 0}, fov = 37},
+  materials = materials,
+  objects = objects,
+  environment = {color = {0.32, 0.36, 0.42}},
+  outputs = {{file = "sphere-and-planes.####.exr"}, {file = "sphere-and-planes.####.png", tone_map = "filmic"}},
+}
