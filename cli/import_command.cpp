@@ -23,7 +23,8 @@ int import_command(int argc, char** argv) {
       "folder JOB_files beside it. 'hyades render' takes scenes without this too.",
       "hyades import");
   core::WriteSceneJob request;
-  app.add_option("scene", request.scene, "the scene, mesh or script (.glb, .gltf, .pbrt, .obj, .ply, .lua)")
+  app.add_option("scene", request.scene,
+                 "the scene, mesh or script (.glb, .gltf, .pbrt, .obj, .ply, .lua)")
       ->required();
   app.add_option("-o,--output", request.job, "the job to be written (default: SCENE.yaml, here)");
   app.add_option("--media", request.media,
@@ -48,7 +49,8 @@ int import_command(int argc, char** argv) {
       "exit status: 0 written, 2 not");
   if (const auto status = parse_command_line(app, argc, argv, kBadInput)) return *status;
   if (!core::is_scene_file(request.scene)) {
-    std::fprintf(stderr, "%s: expected a scene, mesh or script (.glb, .gltf, .pbrt, .obj, .ply, .lua)\n",
+    std::fprintf(stderr,
+                 "%s: expected a scene, mesh or script (.glb, .gltf, .pbrt, .obj, .ply, .lua)\n",
                  core::printable(request.scene).c_str());
     return kBadInput;
   }

@@ -39,7 +39,7 @@ const std::vector<Group>& groups() {
         {"check", "hyades-render",
          "read a job, report every mistake in it, and what it would cost"},
         {"import", "hyades-render",
-         "write a scene of another tool (.glb, .gltf, .pbrt, .obj, .ply) as a job"},
+         "write a scene of another tool (.glb, .gltf, .pbrt, .obj, .ply, .lua) as a job"},
         {"finish", "hyades-render",
          "write a job's pictures out of films that others have rendered"},
         {"merge", "hyades-film", "join films of the same frame"},

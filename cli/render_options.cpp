@@ -125,7 +125,8 @@ struct Words {
 
 void declare_what(CLI::App& app, RenderOptions& options, Words& words) {
   app.add_option("job", options.path,
-                 "the job (.yaml), or a scene or mesh (.glb, .gltf, .pbrt, .obj, .ply)")
+                 "the job (.yaml), or a scene, mesh or script (.glb, .gltf, .pbrt, .obj, .ply, "
+                 ".lua)")
       ->required();
   declare_scene_options(app, options.scene);
   app.add_option("--frames", options.frames,
@@ -223,6 +224,7 @@ std::optional<int> parse_render_options(int argc, char** argv, RenderOptions& op
       "  hyades render jobs/cornell/job.yaml --display 127.0.0.1:14158\n"
       "  hyades render robot.glb --samples 64\n"
       "  hyades render bottles.obj --media media.json\n"
+      "  hyades render spiral.lua --set count=200\n"
       "  hyades render job.yaml --frames 7 --tile 2/3 --samples 0-127 --film part.exr\n"
       "Ctrl-C stops; the same command goes on with what is done, to the same bits, also after a "
       "crash.\n"

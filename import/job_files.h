@@ -25,8 +25,8 @@ struct JobFileOptions {
 class JobFiles {
  public:
   /// Opens the job or scene at `path`. A scene is read, and becomes the job of scene_job(). Errors:
-  /// no such file, a scene that cannot be read, media for what is no scene of another tool, settings
-  /// for what is no script.
+  /// no such file, a scene that cannot be read, media for what is no scene of another tool,
+  /// settings for what is no script.
   static Result<std::unique_ptr<JobFiles>> open(const std::string& path,
                                                 const JobFileOptions& options = {});
 

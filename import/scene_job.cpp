@@ -4,6 +4,7 @@
 #include <charconv>
 #include <cmath>
 #include <filesystem>
+#include <memory>
 #include <utility>
 
 #include "core/job/yaml_build.h"
@@ -241,6 +242,14 @@ YamlPtr staged(const YamlNode& scene, const SceneSections& told, const std::stri
   return job.node();
 }
 
+/// `scene` with the sections of `first` before its own.
+YamlPtr with_sections(const YamlNode& first, const YamlNode& scene) {
+  auto result = std::make_shared<YamlNode>(first);
+  result->map.insert(result->map.end(), scene.map.begin(), scene.map.end());
+  result->weight += scene.weight;
+  return result;
+}
+
 }  // namespace
 
 Result<SceneJob> scene_job(AssetResolver& files, const SceneJobRequest& request) {
@@ -257,9 +266,10 @@ Result<SceneJob> scene_job(AssetResolver& files, const SceneJobRequest& request)
   }
   const std::string stem = std::filesystem::path(request.scene).stem().string();
   SceneJob job{nullptr, *source, std::move(told->notes), std::move(told->files), {}};
-  // A script says all that a job would.
+  // A script says all that a job would, but need not say in which version of the language.
   if (is_script_file(request.scene)) {
-    job.tree = scene;
+    const YamlMap version{{"hyades", yaml_integer(1)}};
+    job.tree = scene->find("hyades") != nullptr ? scene : with_sections(*version.node(), *scene);
     return job;
   }
   job.tree = staged(*scene, *told, safe_name(stem, "scene"), job.added);

@@ -28,9 +28,10 @@ struct SceneJob {
 
 /// The job that shows a scene: as it says itself, and with what it does not say. Without a camera,
 /// a three-quarter view that fits it; without any light, a soft key light and a pale sky; without
-/// both, a ground under it. A script's is what it says, for it says a job. With `media`, every object whose material (or, of an only one, whatever
-/// its name) has the name of a medium there is filled with it, and has the surface of the medium's
-/// index of refraction; media of which none fits are an error that names both sides.
+/// both, a ground under it. A script's is what it says, for it says a job. With `media`, every
+/// object whose material (or, of an only one, whatever its name) has the name of a medium there is
+/// filled with it, and has the surface of the medium's index of refraction; media of which none
+/// fits are an error that names both sides.
 Result<SceneJob> scene_job(AssetResolver& files, const SceneJobRequest& request);
 
 }  // namespace hyades::core

@@ -11,11 +11,11 @@ namespace hyades::core {
 
 /// A scene that is to be written as a job which a person can read and edit.
 struct WriteSceneJob {
-  std::string scene;      ///< path of the scene file
-  std::string job;        ///< path of the job to be written
-  std::string media;      ///< path of a file of media for its materials; empty: none
-  std::string animation;  ///< SceneRequest::animation
-  bool loop = false;      ///< SceneRequest::loop
+  std::string scene;          ///< path of the scene file
+  std::string job;            ///< path of the job to be written
+  std::string media;          ///< path of a file of media for its materials; empty: none
+  std::string animation;      ///< SceneRequest::animation
+  bool loop = false;          ///< SceneRequest::loop
   float fps = 24.0F;          ///< of a script: its own
   ScriptSettings set{};       ///< SceneRequest::set
   bool overwrite = false;     ///< replace what is there already

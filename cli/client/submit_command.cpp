@@ -55,7 +55,8 @@ struct SubmitOptions {
 
 void declare_submit(CLI::App& app, SubmitOptions& options) {
   app.add_option("job", options.path,
-                 "the job (.yaml), or a scene or mesh (.glb, .gltf, .pbrt, .obj, .ply)")
+                 "the job (.yaml), or a scene, mesh or script (.glb, .gltf, .pbrt, .obj, .ply, "
+                 ".lua)")
       ->required();
   app.add_flag("--watch", options.watch, "stay and show progress until the job has ended");
   app.add_option("--priority", options.priority, "higher goes first")

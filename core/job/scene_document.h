@@ -28,8 +28,8 @@ struct SceneDocument {
 /// Added to a scene file's name: the folder of what is made of it.
 inline constexpr std::string_view kMadeFolder = ".files";
 
-/// Whether a file's name is that of a scene (or mesh) that importers read: .gltf, .glb, .pbrt, .obj,
-/// .ply or .lua.
+/// Whether a file's name is that of a scene (or mesh) that importers read: .gltf, .glb, .pbrt,
+/// .obj, .ply or .lua.
 bool is_scene_file(std::string_view name);
 
 /// Whether a file's name is that of a script which makes a job: .lua.

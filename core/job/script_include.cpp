@@ -52,10 +52,10 @@ std::optional<ScriptInclude> read_script_include(const YamlNode& node, Diagnosti
   } else if (set != nullptr) {
     for (const YamlEntry& entry : set->value->map) {
       const bool plain = entry.value->kind == YamlNode::Kind::scalar;
-      const std::string wrong =
-          plain ? wrong_setting(entry.key, entry.value->scalar)
-                : "parameter " + entry.key.substr(0, 60) + " is " + describe(*entry.value) +
-                      ", expected a number, a text, true or false";
+      const std::string wrong = plain ? wrong_setting(entry.key, entry.value->scalar)
+                                      : "parameter " + entry.key.substr(0, 60) + " is " +
+                                            describe(*entry.value) +
+                                            ", expected a number, a text, true or false";
       if (!wrong.empty()) complain(entry.value->where, wrong);
       wanted.set.emplace_back(entry.key, entry.value->scalar);
     }

@@ -66,9 +66,8 @@ class Joiner {
   /// Of scalars and lists of them.
   static bool equal(const YamlNode& a, const YamlNode& b) {
     return a.kind == b.kind && a.scalar == b.scalar && a.quoted == b.quoted &&
-           std::equal(
-               a.list.begin(), a.list.end(), b.list.begin(), b.list.end(),
-               [](const YamlPtr& x, const YamlPtr& y) { return equal(*x, *y); }) &&
+           std::equal(a.list.begin(), a.list.end(), b.list.begin(), b.list.end(),
+                      [](const YamlPtr& x, const YamlPtr& y) { return equal(*x, *y); }) &&
            a.map.empty() && b.map.empty();
   }
 
@@ -129,8 +128,8 @@ class Joiner {
     bool numbers = true;
     for (size_t f = 0; f < nodes.size(); ++f) {
       keys.put(std::to_string(trees_[f].frame), *nodes[f]);
-      numbers = numbers && is_numeric(**nodes[f]) &&
-                (*nodes[f])->list.size() == (*nodes[0])->list.size();
+      numbers =
+          numbers && is_numeric(**nodes[f]) && (*nodes[f])->list.size() == (*nodes[0])->list.size();
     }
     auto node = std::make_shared<YamlNode>(
         *YamlMap{{"keys", keys.node()}, {"ease", yaml_word(numbers ? "linear" : "step")}}.node());
@@ -142,11 +141,11 @@ class Joiner {
     const YamlNode& first = **nodes.front();
     size_t f = 1;
     while (f + 1 < nodes.size() && equal(**nodes[f], first)) ++f;
-    complain(first.where, path_,
-             fmt::format("is {} in frame {} and {} in frame {}, expected the same in every frame: "
-                         "only numbers, vectors and colours may change",
-                         describe(first), trees_.front().frame, describe(**nodes[f]),
-                         trees_[f].frame));
+    complain(
+        first.where, path_,
+        fmt::format("is {} in frame {} and {} in frame {}, expected the same in every frame: "
+                    "only numbers, vectors and colours may change",
+                    describe(first), trees_.front().frame, describe(**nodes[f]), trees_[f].frame));
     return nullptr;
   }
 

@@ -76,22 +76,22 @@ int set_metatable(lua_State* state) {
   return call_original(state);
 }
 
-constexpr std::array<const char*, 6> kLeftOut = {"collectgarbage", "dofile",   "load",
-                                                 "loadfile",       "loadlib",  "warn"};
+constexpr std::array<const char*, 6> kLeftOut = {"collectgarbage", "dofile",  "load",
+                                                 "loadfile",       "loadlib", "warn"};
 constexpr std::array<luaL_Reg, 7> kBaseFunctions = {{{"print", print},
-                                                {"tostring", to_text},
-                                                {"pcall", protected_call},
-                                                {"xpcall", protected_call_with_handler},
-                                                {"pairs", ordered_pairs},
-                                                {"next", ordered_next},
-                                                {nullptr, nullptr}}};
+                                                     {"tostring", to_text},
+                                                     {"pcall", protected_call},
+                                                     {"xpcall", protected_call_with_handler},
+                                                     {"pairs", ordered_pairs},
+                                                     {"next", ordered_next},
+                                                     {nullptr, nullptr}}};
 
 }  // namespace
 
 void push_text(lua_State* state, int at) {
   const int type = lua_type(state, at);
-  const bool plain = type == LUA_TNIL || type == LUA_TBOOLEAN || type == LUA_TNUMBER ||
-                     type == LUA_TSTRING;
+  const bool plain =
+      type == LUA_TNIL || type == LUA_TBOOLEAN || type == LUA_TNUMBER || type == LUA_TSTRING;
   const bool says_itself = !plain && luaL_getmetafield(state, at, "__tostring") != LUA_TNIL;
   if (says_itself) lua_pop(state, 1);
   if (plain || says_itself) {

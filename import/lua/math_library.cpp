@@ -55,17 +55,17 @@ int no_random(lua_State* state) {
 }
 
 constexpr std::array<luaL_Reg, 12> kMathFunctions = {{{"sin", of_one<core::sin>},
-                                                 {"cos", of_one<core::cos>},
-                                                 {"tan", of_one<core::tan>},
-                                                 {"asin", of_one<core::asin>},
-                                                 {"acos", of_one<core::acos>},
-                                                 {"atan", atan},
-                                                 {"exp", of_one<core::exp>},
-                                                 {"log", logarithm},
-                                                 {"pow", power},
-                                                 {"random", no_random},
-                                                 {"randomseed", no_random},
-                                                 {nullptr, nullptr}}};
+                                                      {"cos", of_one<core::cos>},
+                                                      {"tan", of_one<core::tan>},
+                                                      {"asin", of_one<core::asin>},
+                                                      {"acos", of_one<core::acos>},
+                                                      {"atan", atan},
+                                                      {"exp", of_one<core::exp>},
+                                                      {"log", logarithm},
+                                                      {"pow", power},
+                                                      {"random", no_random},
+                                                      {"randomseed", no_random},
+                                                      {nullptr, nullptr}}};
 
 }  // namespace
 

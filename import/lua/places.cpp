@@ -43,8 +43,9 @@ class Copy {
       bool known = false;
       for (const std::string_view one : kKeys) known = known || key == one;
       if (!known || !text) {
-        luaL_error(state_, "copy %I has the key '%s', expected at, scale, rotate_x, rotate_y or "
-                           "rotate_z",
+        luaL_error(state_,
+                   "copy %I has the key '%s', expected at, scale, rotate_x, rotate_y or "
+                   "rotate_z",
                    index_, key.data());
       }
     }

@@ -63,8 +63,9 @@ class ScriptSource : public SceneSource {
 
   Result<YamlPtr> tree_at(const SceneRequest& request) const {
     if (!request.beside.empty()) {
-      return Error{script_ + ": what a script says names files from the script's folder on, "
-                             "expected a job in that folder"};
+      return Error{script_ +
+                   ": what a script says names files from the script's folder on, "
+                   "expected a job in that folder"};
     }
     ScriptRequest run{files_, script_, request.set, request.made};
     if (request.fps > 0.0F) run.fps = request.fps;
@@ -81,9 +82,10 @@ class ScriptSource : public SceneSource {
 
   Result<YamlPtr> tree_of_frames(ScriptRequest& run, const FramesDesc& frames) const {
     if (frames.last - int64_t{frames.first} >= kMostFrames) {
-      return Error{fmt::format("{}: the script asks for the frame, and the job has {} frames, "
-                               "expected at most {}",
-                               script_, frames.last - int64_t{frames.first} + 1, kMostFrames)};
+      return Error{
+          fmt::format("{}: the script asks for the frame, and the job has {} frames, "
+                      "expected at most {}",
+                      script_, frames.last - int64_t{frames.first} + 1, kMostFrames)};
     }
     std::vector<FrameTree> trees;
     const double end = thread_seconds() + run.limits.seconds;

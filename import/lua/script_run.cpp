@@ -41,10 +41,10 @@ class Run {
     if (auto done = machine_.call(0, 1); !done) return done.error();
     if (auto known = check_settings(); !known) return known.error();
     if (!lua_istable(state, -1)) {
-      return Error{fmt::format("{}: the script returns {}, expected a table of a job's sections: "
-                               "return {{objects = {{...}}}}",
-                               request_.script,
-                               lua_isnil(state, -1) ? "nothing" : luaL_typename(state, -1))};
+      return Error{fmt::format(
+          "{}: the script returns {}, expected a table of a job's sections: "
+          "return {{objects = {{...}}}}",
+          request_.script, lua_isnil(state, -1) ? "nothing" : luaL_typename(state, -1))};
     }
     auto tree = tree_of(state, -1);
     if (!tree) return told_beside(request_.script, tree.error());
@@ -113,9 +113,9 @@ class Run {
   static int param(lua_State* state) {
     Run& run = of(state);
     const Setting setting = read_setting(state, run.request_.set);
-    const auto same = std::find_if(
-        run.result_.parameters.begin(), run.result_.parameters.end(),
-        [&](const Parameter& parameter) { return parameter.name == setting.name; });
+    const auto same =
+        std::find_if(run.result_.parameters.begin(), run.result_.parameters.end(),
+                     [&](const Parameter& parameter) { return parameter.name == setting.name; });
     if (same != run.result_.parameters.end() && same->usual != setting.usual) {
       return luaL_error(state, "parameter %s has the default %s here and %s elsewhere",
                         setting.name.c_str(), setting.usual.c_str(), same->usual.c_str());
@@ -154,8 +154,9 @@ class Run {
     }
     const bool open = std::find(run.open_.begin(), run.open_.end(), *name) != run.open_.end();
     if (open || run.open_.size() >= kMaxDepth) {
-      return luaL_error(state, open ? "include: '%s' includes itself in the end"
-                                    : "include: '%s' lies too deep, expected at most 16 levels",
+      return luaL_error(state,
+                        open ? "include: '%s' includes itself in the end"
+                             : "include: '%s' lies too deep, expected at most 16 levels",
                         name->c_str());
     }
     if (auto loaded = run.load(*name); !loaded) {

@@ -59,8 +59,9 @@ std::string usual_value(lua_State* state) {
     case LUA_TSTRING:
       return fmt::format("\"{}\"", lua_tostring(state, 2));
     default:
-      luaL_error(state, "the default of parameter %s is a %s, expected a number, a text, true or "
-                        "false",
+      luaL_error(state,
+                 "the default of parameter %s is a %s, expected a number, a text, true or "
+                 "false",
                  lua_tostring(state, 1), luaL_typename(state, 2));
       return {};
   }

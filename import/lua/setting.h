@@ -15,9 +15,9 @@ struct Setting {
   std::string help;   ///< empty: none
 };
 
-/// Reads the arguments of `param(name, default, help)` and pushes the parameter's value: the last of
-/// its name in `set`, read as the default's type (number, whole number, text or boolean), else the
-/// default. Raises Lua's error where that does not fit, or the arguments are wrong.
+/// Reads the arguments of `param(name, default, help)` and pushes the parameter's value: the last
+/// of its name in `set`, read as the default's type (number, whole number, text or boolean), else
+/// the default. Raises Lua's error where that does not fit, or the arguments are wrong.
 Setting read_setting(lua_State* state, const ScriptSettings& set);
 
 }  // namespace hyades::core::lua

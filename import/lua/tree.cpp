@@ -20,6 +20,8 @@ namespace {
 
 /// From here on numbers are written as they are, for the job's reader to refuse.
 constexpr double kBeyondJobs = 1e18;
+/// Up to here a number of Lua holds every whole number.
+constexpr double kMostWhole = 0x1p53;
 
 /// A key of a map on its way into the tree.
 struct Key {
@@ -33,8 +35,8 @@ class Reader {
 
   YamlPtr value(int at, const YamlPlace& around) {
     if (++count_ > kMaxYamlNodes) {
-      return refuse(around, fmt::format("more than {} values; many copies of one thing are told by "
-                                        "places(): see docs/lua.md",
+      return refuse(around, fmt::format("more than {} values and keys; many copies of one thing "
+                                        "are told by places(): see docs/lua.md",
                                         kMaxYamlNodes));
     }
     switch (lua_type(state_, at)) {
@@ -83,18 +85,22 @@ class Reader {
     if (!std::isfinite(number)) {
       return refuse(around, fmt::format("is {}, expected a finite number", number));
     }
+    // Whole ones keep all their digits, as seeds of other programs do.
+    if (std::floor(number) == number && std::abs(number) <= kMostWhole) {
+      return placed(yaml_integer(static_cast<int64_t>(number)), around);
+    }
     const bool beyond = std::abs(number) > kBeyondJobs;
-    return placed(beyond ? yaml_word(fmt::format("{}", number))
-                         : yaml_number(static_cast<float>(number)),
-                  around);
+    return placed(
+        beyond ? yaml_word(fmt::format("{}", number)) : yaml_number(static_cast<float>(number)),
+        around);
   }
 
   YamlPtr table(int at, const YamlPlace& around) {
     const YamlPlace made = machine_.made_at(lua_topointer(state_, at));
     const YamlPlace& where = made.line > 0 ? made : around;
     if (++depth_ > kMaxYamlDepth || lua_checkstack(state_, 4) == 0) {
-      return refuse(where, fmt::format("lies deeper than {} tables (a table within itself?)",
-                                       kMaxYamlDepth));
+      return refuse(
+          where, fmt::format("lies deeper than {} tables (a table within itself?)", kMaxYamlDepth));
     }
     const auto length = static_cast<lua_Integer>(lua_rawlen(state_, at));
     const bool is_list = length > 0 && !holds_frames_;
@@ -138,8 +144,8 @@ class Reader {
       const bool hole = lua_rawgeti(state_, at, i) == LUA_TNIL;
       lua_pop(state_, 1);
       if (!hole) continue;
-      (void)refuse(where, fmt::format("has no item {} of {}, expected a list without holes", i,
-                                      length));
+      (void)refuse(where,
+                   fmt::format("has no item {} of {}, expected a list without holes", i, length));
       return false;
     }
     return true;
@@ -182,15 +188,17 @@ class Reader {
     lua_pushnil(state_);
     while (lua_next(state_, at) != 0) {
       lua_pop(state_, 1);
+      ++count_;  // the reader of jobs counts keys too
       const int type = lua_type(state_, -1);
       if (type == LUA_TSTRING) {
         keys.push_back({text_at(-1)});
       } else if (type == LUA_TNUMBER && of_frames) {
         keys.push_back({shown_key(), lua_tonumber(state_, -1)});
       } else {
-        (void)refuse(where, fmt::format("has the key {}, expected a list (1, 2, 3, ...) or a map of "
-                                        "names",
-                                        shown_key()));
+        (void)refuse(where,
+                     fmt::format("has the key {}, expected a list (1, 2, 3, ...) or a map of "
+                                 "names",
+                                 shown_key()));
         lua_pop(state_, 1);
         return false;
       }

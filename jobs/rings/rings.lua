@@ -1,7 +1,7 @@
 -- Rings within rings, each turned a little further than the one around it, and a bright ball in their middle; a lamp behind them
 -- throws their shadows into the fog.
-local count = param("rings", 9, "how many rings")
-local twist = param("twist", 17, "degrees that each ring is turned against the one around it")
+local count = param("rings", 5, "how many rings")
+local twist = param("twist", 14, "degrees that each ring is turned against the one around it")
 
 local center = {0, 2.3, 0}
 local objects = {
@@ -10,20 +10,20 @@ local objects = {
 }
 for i = 1, count do
   -- A ring is a row of short rods around a circle.
-  local radius = 0.42 + 0.17 * i
+  local radius = 0.26 + 0.31 * i
   local rods, parts = 48, {}
   for k = 1, rods do
     local angle = 360 * k / rods
     parts[string.format("rod_%02d", k)] = {
       shape = "box",
-      size = {2.02 * radius * math.tan(math.pi / rods), 0.07, 0.035},
+      size = {2.02 * radius * math.tan(math.pi / rods), 0.04, 0.14},
       transform = {{translate = {0, 0, radius}}, {rotate_y = angle}},
     }
   end
   objects[string.format("ring_%d", i)] = {
     group = {objects = parts},
     material = i % 3 == 0 and "gold" or "bronze",
-    transform = {{rotate_x = 90}, {rotate_y = twist * (count - i)}, {rotate_x = 9 * (count - i)}},
+    transform = {{rotate_x = twist * (count - i)}, {rotate_x = 48}, {rotate_y = -38 + 11 * (count - i)}},
     at = center,
   }
 end
@@ -33,7 +33,7 @@ return {
   film = {size = {640, 400}},
   sampling = {samples = 512, seed = 5},
   integrator = {type = "bdpt", max_depth = 3},
-  camera = {look_from = {2.2, 1.5, 7.2}, look_at = {-0.1, 2.05, 0}, fov = 36},
+  camera = {look_from = {0.6, 1.7, 8.2}, look_at = {0.1, 2.0, 0}, fov = 37},
   media = {fog = {scattering = {0.036, 0.039, 0.044}, absorption = 0.003, g = 0.45}},
   atmosphere = "fog",
   materials = {
@@ -43,8 +43,8 @@ return {
   },
   objects = objects,
   lights = {
-    beam = {type = "spot", at = {-2.6, 5.2, -5.5}, look_at = center, angle = 19, blend = 0.15, power = 7000, color = "4300K"},
-    sky = {type = "point", at = {3.5, 5, 6}, power = 130, color = {0.5, 0.65, 1}},
+    beam = {type = "spot", at = {-3.1, 6, -2.6}, look_at = center, angle = 22, blend = 0.1, power = 4800, color = "4300K"},
+    sky = {type = "point", at = {3.5, 5, 6}, power = 30, color = {0.5, 0.65, 1}},
   },
-  outputs = {{file = "rings.exr"}, {file = "rings.png", tone_map = "filmic", exposure = 0.8}},
+  outputs = {{file = "rings.exr"}, {file = "rings.png", tone_map = "filmic", exposure = 1.2}},
 }

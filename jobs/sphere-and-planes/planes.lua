@@ -12,23 +12,23 @@ end
 
 local materials = {
   chrome = {type = "conductor", metal = "chromium", roughness = 0.02},
-  floor = {type = "glossy", color = {0.55, 0.54, 0.52}, reflectiveness = 0.1, glossiness = 0.8},
+  floor = {type = "glossy", color = {0.4, 0.39, 0.38}, reflectiveness = 0.15, glossiness = 0.8},
 }
 local objects = {
   floor = {shape = "rectangle", size = {60, 60}, material = "floor"},
-  ball = {shape = "sphere", radius = 1, at = {0, 1.35 + 0.12 * math.sin(math.pi * time()), 0}, material = "chrome"},
-  lamp = {shape = "rectangle", size = {5, 5}, transform = {{rotate_x = 180}}, at = {-2, 8, 3}, emit = {color = "5200K", power = 900}},
+  ball = {shape = "sphere", radius = 1.1, at = {0, 1.5 + 0.12 * math.sin(math.pi * time()), 0}, material = "chrome"},
+  lamp = {shape = "rectangle", size = {5, 5}, transform = {{rotate_x = 180}}, at = {-2, 8, 3}, emit = {color = "5200K", power = 700}},
 }
 for i = 1, count do
   local name = string.format("plane_%02d", i)
+  local height = 1 + 0.4 * math.sin(4 * math.pi * i / count)
   local turn = 360 * i / count + 15 * time()
   materials[name] = {type = "lambert", color = hue(i / count, 0.75)}
   objects[name] = {
     shape = "box",
-    size = {1.5, 1.5 + 0.5 * math.sin(4 * math.pi * i / count), 0.03},
+    size = {1.3, height, 0.03},
     material = name,
-    transform = {{rotate_y = 24}, {translate = {2.6, 0, 0}}, {rotate_y = turn}},
-    at = {0, 1.2, 0},
+    transform = {{rotate_y = 24}, {translate = {2.5, height / 2, 0}}, {rotate_y = turn}},
   }
 end
 
@@ -38,9 +38,9 @@ return {
   film = {size = {720, 400}},
   sampling = {samples = 256, seed = 4},
   integrator = {type = "path", max_depth = 8},
-  camera = {look_from = {0, 3.6, 9}, look_at = {0, 1.1, 0}, fov = 37},
+  camera = {look_from = {0, 4.8, 8.4}, look_at = {0, 0.95, 0}, fov = 33},
   materials = materials,
   objects = objects,
-  environment = {color = {0.32, 0.36, 0.42}},
+  environment = {color = {0.12, 0.15, 0.2}},
   outputs = {{file = "sphere-and-planes.####.exr"}, {file = "sphere-and-planes.####.png", tone_map = "filmic"}},
 }

@@ -1,6 +1,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <fmt/format.h>
+
 #include "core/geometry/read_places.h"
 #include "import/scene_source.h"
 #include "tests/import/lua_script.h"
@@ -22,10 +24,10 @@ TEST(LuaTree, TablesBecomeListsAndMaps) {
   EXPECT_EQ(lua_value("v = {'1', 'true', '#d8c8a8', '3200K', '= 2 * t', 'a: b'}"),
             "v: [\"1\", \"true\", \"#d8c8a8\", 3200K, \"= 2 * t\", \"a: b\"]\n");
   EXPECT_EQ(lua_value("v = {keys = {[48] = 2, [1] = 1, [2.5] = {0, 1}}}"),
-            "v: {keys: {1: 1, 2.5: [0, 1], 48: 2}}\n");
-  EXPECT_EQ(lua_value("v = {keys = {[1] = 1, [2] = 2}}"), "v: {keys: {1: 1, 2: 2}}\n");
-  EXPECT_EQ(lua_value("v = {0.1, 1/3, 1e-7, 100000000, 2^53, -0.0}"),
-            "v: [0.1, 0.33333334, 1e-07, 100000000, 9007199300000000, -0]\n");
+            "v:\n  keys: {1: 1, 2.5: [0, 1], 48: 2}\n");
+  EXPECT_EQ(lua_value("v = {keys = {[1] = 1, [2] = 2}}"), "v:\n  keys: {1: 1, 2: 2}\n");
+  EXPECT_EQ(lua_value("v = {0.1, 1/3, 1e-7, 100000000, 2^53, 0.1 + 0.2}"),
+            "v: [0.1, 0.33333334, 1e-07, 100000000, 9007199254740992, 0.3]\n");
 }
 
 TEST(LuaTree, WhatIsNoTreeIsToldWithItsPlaceAndPath) {
@@ -144,7 +146,8 @@ TEST(LuaParameters, AreReadAsTheirDefaults) {
   EXPECT_THAT(run_lua(script, {{"n", "1.5"}}).error,
               StartsWith("a/scene.lua:1: parameter n is '1.5', expected a whole number (default: "
                          "1)"));
-  EXPECT_THAT(run_lua(script, {{"x", "wide"}}).error, HasSubstr("expected a number (default: 0.5)"));
+  EXPECT_THAT(run_lua(script, {{"x", "wide"}}).error,
+              HasSubstr("expected a number (default: 0.5)"));
   EXPECT_THAT(run_lua(script, {{"x", "0x10"}}).error, HasSubstr("expected a number"));
   EXPECT_THAT(run_lua(script, {{"b", "1"}}).error, HasSubstr("expected true or false"));
   EXPECT_THAT(run_lua(script, {{"xx", "1"}}).error,
@@ -152,7 +155,8 @@ TEST(LuaParameters, AreReadAsTheirDefaults) {
                     HasSubstr("\n  n = 1\n  x = 0.5  (how far)\n  s = \"red\"\n  b = true")));
   EXPECT_THAT(run_lua("return {}", {{"n", "1"}}).error,
               HasSubstr("no parameter 'n': the script has none"));
-  EXPECT_THAT(run_lua("return {v = param('n', {})}").error, HasSubstr("the default of parameter n"));
+  EXPECT_THAT(run_lua("return {v = param('n', {})}").error,
+              HasSubstr("the default of parameter n"));
   EXPECT_THAT(run_lua("return {v = {param('n', 1), param('n', 2)}}").error,
               HasSubstr("parameter n has the default 2 here and 1 elsewhere"));
 }
@@ -192,14 +196,13 @@ TEST(LuaFrames, WhatDiffersBecomesKeys) {
   const auto own = (*source)->sections(request);
   ASSERT_TRUE(own) << own.error().message;
   EXPECT_THAT(write_yaml(*own->sections),
-              HasSubstr("{at: {keys: {1: [0, 1, 0], 2: [0.5, 2, 0], 3: [1, 3, 0], 4: [1.5, 4, 0]}, "
-                        "ease: linear}, radius: 1, shape: sphere}"));
+              HasSubstr("at: {keys: {1: [0, 1, 0], 2: [0.5, 2, 0], 3: [1, 3, 0], 4: [1.5, 4, 0]}, "
+                        "ease: linear}\n    radius: 1\n    shape: sphere\n"));
   request.fps = 10.0F;
   request.frames = "5";
   const auto of_job = (*source)->sections(request);
   ASSERT_TRUE(of_job);
-  EXPECT_THAT(write_yaml(*of_job->sections),
-              HasSubstr("keys: {5: [0.4, 5, 0], 6: [0.5, 6, 0]}"));
+  EXPECT_THAT(write_yaml(*of_job->sections), HasSubstr("keys: {5: [0.4, 5, 0], 6: [0.5, 6, 0]}"));
 }
 
 TEST(LuaFrames, AJobsFramesCount) {
@@ -209,8 +212,14 @@ TEST(LuaFrames, AJobsFramesCount) {
             "1 + time()}}}");
   Job job;
   EXPECT_EQ(job_complaints("include: s.lua\nframes: {range: 10-12, fps: 4}\n", files, &job), "");
-  const auto& sphere = std::get<SphereDesc>(job.objects.at(0).kind);
-  (void)sphere;
+  EXPECT_EQ(job.frames.last, 12);
+  ASSERT_EQ(job.includes.size(), 1U);
+  EXPECT_EQ(job.includes[0], "s.lua,fps=4,frames=10-12.yaml");
+  ImportingResolver importing(files);
+  const auto made = importing.open(job.includes[0]);
+  ASSERT_TRUE(made) << made.error().message;
+  EXPECT_THAT(std::string(made->chars(), made->size()),
+              HasSubstr("radius: {keys: {10: 3.25, 11: 3.5, 12: 3.75, 13: 4}, ease: linear}"));
 }
 
 TEST(LuaFrames, WhatCannotChangeIsToldWithItsPath) {
@@ -222,22 +231,25 @@ TEST(LuaFrames, WhatCannotChangeIsToldWithItsPath) {
   EXPECT_THAT(said("local o = {a = {shape = 'sphere'}}\nif frame() == 2 then\n  o.b = {shape = "
                    "'box'}\nend\nreturn {objects = o}"),
               HasSubstr("in/s.lua:3: objects.b is there in frame 2 and not in frame 1"));
-  EXPECT_THAT(said("return {objects = {a = {shape = frame() > 2 and 'box' or 'sphere'}}}"),
-              HasSubstr("in/s.lua:1: objects.a.shape is the text \"sphere\" in frame 1 and the text "
-                        "\"box\" in frame 3, expected the same in every frame"));
-  EXPECT_THAT(said("local t = {}\nfor i = 1, frame() do t[i] = {scale = 1} end\nreturn {objects = "
-                   "{a = {shape = 'box', transform = t}}}"),
-              HasSubstr("objects.a.transform is a list of 1 in frame 1 and a list of 2 in frame 2"));
+  EXPECT_THAT(
+      said("return {objects = {a = {shape = frame() > 2 and 'box' or 'sphere'}}}"),
+      HasSubstr("in/s.lua:1: objects.a.shape is the text \"sphere\" in frame 1 and the text "
+                "\"box\" in frame 3, expected the same in every frame"));
+  EXPECT_THAT(
+      said("local t = {}\nfor i = 1, frame() do t[i] = {scale = 1} end\nreturn {objects = "
+           "{a = {shape = 'box', transform = t}}}"),
+      HasSubstr("objects.a.transform is a list of 1 in frame 1 and a list of 2 in frame 2"));
   EXPECT_THAT(said("if frame() == 3 then error('no') end return {}"),
               HasSubstr("include: frame 3: in/s.lua:1: no"));
 }
 
 TEST(LuaPlaces, CopiesAreAFile) {
   MemoryAssets files;
-  files.add("s.lua",
-            "return {groups = {g = {objects = {b = {shape = 'box'}}}}, objects = {all = {instance = "
-            "'g', places = places{{at = {1, 2, 3}}, {scale = 2, rotate_y = 90}, {scale = {1, 2, 3}, "
-            "rotate_x = 90, at = {0, 1, 0}}}}}}");
+  files.add(
+      "s.lua",
+      "return {groups = {g = {objects = {b = {shape = 'box'}}}}, objects = {all = {instance = "
+      "'g', places = places{{at = {1, 2, 3}}, {scale = 2, rotate_y = 90}, {scale = {1, 2, 3}, "
+      "rotate_x = 90, at = {0, 1, 0}}}}}}");
   ImportingResolver importing(files);
   const auto source = read_scene(importing.sources(), "s.lua");
   SceneRequest request;
@@ -245,7 +257,8 @@ TEST(LuaPlaces, CopiesAreAFile) {
   const auto told = (*source)->sections(request);
   ASSERT_TRUE(told) << told.error().message;
   importing.adopt("s.lua", *source);
-  const std::string name = told->sections->find("objects")->value->map[0].value->find("places")->value->scalar;
+  const std::string name =
+      told->sections->find("objects")->value->map[0].value->find("places")->value->scalar;
   const auto places = read_places(importing, name, 0);
   ASSERT_TRUE(places) << places.error().message;
   ASSERT_EQ((*places)->size(), 3U);
@@ -259,13 +272,29 @@ TEST(LuaPlaces, CopiesAreAFile) {
   EXPECT_EQ(job_complaints("include: s.lua\n", files), "");
 }
 
+TEST(LuaPlaces, TheTownTakesAHundredthOfTheSteps) {
+  const auto folder = make_file_resolver("jobs/town");
+  const ScriptSettings set;
+  lua::ScriptRequest request{*folder, "town.lua", set, "made/"};
+  request.limits.steps /= 100;
+  const auto town = lua::run_script(request);
+  ASSERT_TRUE(town) << town.error().message;
+  size_t copies = 0;
+  for (const auto& [name, file] : town->made) copies += file.size() / (12 * sizeof(float));
+  EXPECT_GE(copies, 100'000U);
+  const auto again = lua::run_script(request);
+  ASSERT_TRUE(again);
+  EXPECT_EQ(write_yaml(*again->tree), write_yaml(*town->tree)) << "names of files are hashes";
+}
+
 TEST(LuaPlaces, WrongCopiesAreToldByNumber) {
   const auto error = [](const std::string& list) {
     return run_lua("return {v = places{" + list + "}}").error;
   };
-  EXPECT_THAT(error("{}, {at = {1, 2}}"),
-              StartsWith("a/scene.lua:1: at of copy 2 is a table without three numbers, expected {x, "
-                         "y, z}"));
+  EXPECT_THAT(
+      error("{}, {at = {1, 2}}"),
+      StartsWith("a/scene.lua:1: at of copy 2 is a table without three numbers, expected {x, "
+                 "y, z}"));
   EXPECT_THAT(error("{at = {1, 2, 'x'}}"), HasSubstr("at of copy 1 is a string"));
   EXPECT_THAT(error("{rotate_y = 0/0}"), HasSubstr("expected a finite number"));
   EXPECT_THAT(error("{turn = 3}"), HasSubstr("copy 1 has the key 'turn', expected at, scale,"));
