@@ -43,6 +43,9 @@ class Joiner {
 
   YamlPtr joined(const Nodes& nodes) {
     const YamlNode& first = **nodes.front();
+    const bool shared = std::all_of(nodes.begin(), nodes.end(),
+                                    [&](const YamlPtr* node) { return *node == *nodes.front(); });
+    if (shared) return *nodes.front();
     const auto all = [&](const auto& holds) {
       return std::all_of(nodes.begin(), nodes.end(),
                          [&](const YamlPtr* node) { return holds(**node); });
@@ -161,6 +164,27 @@ class Joiner {
 };
 
 }  // namespace
+
+YamlPtr share_equal(const YamlPtr& first, const YamlPtr& tree, uint64_t& different) {
+  const bool alike = first->kind == tree->kind && first->list.size() == tree->list.size() &&
+                     first->map.size() == tree->map.size();
+  if (!alike || first->scalar != tree->scalar || first->quoted != tree->quoted) {
+    different += tree->weight;
+    return tree;
+  }
+  auto copy = std::make_shared<YamlNode>(*tree);
+  bool same = true;
+  for (size_t i = 0; i < copy->list.size(); ++i) {
+    copy->list[i] = share_equal(first->list[i], tree->list[i], different);
+    same = same && copy->list[i] == first->list[i];
+  }
+  for (size_t i = 0; i < copy->map.size(); ++i) {
+    same = same && first->map[i].key == tree->map[i].key;
+    copy->map[i].value = share_equal(first->map[i].value, tree->map[i].value, different);
+    same = same && copy->map[i].value == first->map[i].value;
+  }
+  return same ? first : YamlPtr(copy);
+}
 
 Result<YamlPtr> join_frames(const std::vector<FrameTree>& trees) {
   Nodes roots;

@@ -14,6 +14,10 @@ struct FrameTree {
   YamlPtr tree;
 };
 
+/// `tree` with what is equal in `first`, which is kept once then; `different` grows by the values
+/// that are not.
+YamlPtr share_equal(const YamlPtr& first, const YamlPtr& tree, uint64_t& different);
+
 /// One tree that is each of `trees` (at least one, by rising frame) at its frame: what differs
 /// becomes `{keys: {1: ..., 2: ...}}`, numbers and lists of numbers on straight lines from frame to
 /// frame, colours by steps. Errors name the path of what cannot change within a job: keys that are

@@ -1,6 +1,8 @@
 #include "import/lua/machine.h"
 
+#include <algorithm>
 #include <ctime>
+#include <new>
 
 #include <cstdlib>
 #include <cstring>

@@ -88,13 +88,20 @@ class ScriptSource : public SceneSource {
                       script_, frames.last - int64_t{frames.first} + 1, kMostFrames)};
     }
     std::vector<FrameTree> trees;
+    uint64_t different = 0;
     const double end = thread_seconds() + run.limits.seconds;
     // One more than are shown, for what moves while the last one's shutter is open.
     for (run.frame = frames.first; run.frame <= frames.last + 1; ++run.frame) {
       run.limits.seconds = end - thread_seconds();
       auto result = run_once(run);
       if (!result) return result.error().in(fmt::format("frame {}", run.frame));
-      trees.push_back({run.frame, result->tree});
+      const YamlPtr first = trees.empty() ? result->tree : trees.front().tree;
+      trees.push_back({run.frame, share_equal(first, result->tree, different)});
+      if (different <= kMaxYamlNodes) continue;
+      return Error{
+          fmt::format("{}: its frames differ in more than {} values, expected fewer "
+                      "frames, or motion by expressions (docs/lua.md)",
+                      script_, kMaxYamlNodes)};
     }
     auto joined = join_frames(trees);
     if (!joined) return told_beside(script_, joined.error());

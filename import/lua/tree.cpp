@@ -35,9 +35,10 @@ class Reader {
 
   YamlPtr value(int at, const YamlPlace& around) {
     if (++count_ > kMaxYamlNodes) {
-      return refuse(around, fmt::format("more than {} values and keys; many copies of one thing "
-                                        "are told by places(): see docs/lua.md",
-                                        kMaxYamlNodes));
+      return refuse(
+          around, fmt::format("lies beyond {} values and keys, which is what a job may have; many "
+                              "copies of one thing are told by places(): see docs/lua.md",
+                              kMaxYamlNodes));
     }
     switch (lua_type(state_, at)) {
       case LUA_TBOOLEAN:

@@ -239,6 +239,14 @@ TEST(LuaFrames, WhatCannotChangeIsToldWithItsPath) {
       said("local t = {}\nfor i = 1, frame() do t[i] = {scale = 1} end\nreturn {objects = "
            "{a = {shape = 'box', transform = t}}}"),
       HasSubstr("objects.a.transform is a list of 1 in frame 1 and a list of 2 in frame 2"));
+  MemoryAssets files;
+  files.add("s.lua",
+            "local t = {}\nfor i = 1, 1000 do t['b' .. i] = {shape = 'sphere', radius = i + "
+            "frame()} end\nreturn {objects = t}");
+  EXPECT_THAT(job_complaints("include: s.lua\nframes: 1-5000\n", files),
+              HasSubstr("its frames differ in more than 1048576 values"));
+  EXPECT_THAT(job_complaints("include: s.lua\nframes: 1-10001\n", files),
+              HasSubstr("the job has 10001 frames, expected at most 10000"));
   EXPECT_THAT(said("if frame() == 3 then error('no') end return {}"),
               HasSubstr("include: frame 3: in/s.lua:1: no"));
 }
