@@ -12,6 +12,27 @@ namespace {
 constexpr size_t kLongestValue = 100;
 const std::array<std::string, 2> kKeys = {"lua", "set"};
 
+/// Reads `{seed: 3}`; false after a complaint.
+bool read_settings(const YamlNode& node, ScriptSettings& set, Diagnostics& diagnostics) {
+  if (node.kind != YamlNode::Kind::map) {
+    diagnostics.add(node.where,
+                    "set is " + describe(node) + ", expected a map of the script's parameters");
+    return false;
+  }
+  bool good = true;
+  for (const YamlEntry& entry : node.map) {
+    const bool plain = entry.value->kind == YamlNode::Kind::scalar;
+    const std::string wrong = plain ? wrong_setting(entry.key, entry.value->scalar)
+                                    : "parameter " + entry.key.substr(0, 60) + " is " +
+                                          describe(*entry.value) +
+                                          ", expected a number, a text, true or false";
+    if (!wrong.empty()) diagnostics.add(entry.value->where, wrong);
+    good = good && wrong.empty();
+    set.emplace_back(entry.key, entry.value->scalar);
+  }
+  return good;
+}
+
 }  // namespace
 
 std::string wrong_setting(const std::string& name, const std::string& value) {
@@ -25,6 +46,13 @@ std::string wrong_setting(const std::string& name, const std::string& value) {
 }
 
 std::optional<ScriptInclude> read_script_include(const YamlNode& node, Diagnostics& diagnostics) {
+  const YamlEntry* file = node.find("lua");
+  if (file == nullptr) {
+    diagnostics.add(node.where, "include is " + describe(node) +
+                                    ", expected a file name, {lua: script.lua, set: {...}} or a "
+                                    "list of them");
+    return std::nullopt;
+  }
   bool good = true;
   const auto complain = [&](const YamlPlace& where, const std::string& message) {
     diagnostics.add(where, message);
@@ -35,30 +63,13 @@ std::optional<ScriptInclude> read_script_include(const YamlNode& node, Diagnosti
     complain(entry.key_where, "unknown key '" + entry.key.substr(0, 60) + "' of include" +
                                   did_you_mean(entry.key, kKeys) + "; expected lua and set");
   }
-  ScriptInclude wanted;
-  const YamlEntry* file = node.find("lua");
-  if (file == nullptr || file->value->kind != YamlNode::Kind::scalar ||
-      !is_script_file(file->value->scalar)) {
-    complain(file != nullptr ? file->value->where : node.where,
-             "lua is " + (file != nullptr ? describe(*file->value) : "missing") +
-                 ", expected the name of a script (.lua)");
-  } else {
-    wanted.scene = file->value->scalar;
+  ScriptInclude wanted{file->value->scalar, {}};
+  if (file->value->kind != YamlNode::Kind::scalar || !is_script_file(wanted.scene)) {
+    complain(file->value->where,
+             "lua is " + describe(*file->value) + ", expected the name of a script (.lua)");
   }
-  const YamlEntry* set = node.find("set");
-  if (set != nullptr && set->value->kind != YamlNode::Kind::map) {
-    complain(set->value->where,
-             "set is " + describe(*set->value) + ", expected a map of the script's parameters");
-  } else if (set != nullptr) {
-    for (const YamlEntry& entry : set->value->map) {
-      const bool plain = entry.value->kind == YamlNode::Kind::scalar;
-      const std::string wrong = plain ? wrong_setting(entry.key, entry.value->scalar)
-                                      : "parameter " + entry.key.substr(0, 60) + " is " +
-                                            describe(*entry.value) +
-                                            ", expected a number, a text, true or false";
-      if (!wrong.empty()) complain(entry.value->where, wrong);
-      wanted.set.emplace_back(entry.key, entry.value->scalar);
-    }
+  if (const YamlEntry* set = node.find("set")) {
+    good = read_settings(*set->value, wanted.set, diagnostics) && good;
   }
   return good ? std::optional(wanted) : std::nullopt;
 }

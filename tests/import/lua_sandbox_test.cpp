@@ -58,6 +58,20 @@ TEST(LuaSandbox, WhatDoesNotEndIsEnded) {
   }
 }
 
+TEST(LuaSandbox, WhatIsCopiedCounts) {
+  lua::Limits limits = small_limits();
+  limits.seconds = 10.0;  // twenty million steps that copy a text of a megabyte would take longer
+  limits.steps = 20'000'000;
+  EXPECT_THAT(
+      run_lua("local s = ('x'):rep(1000000) while true do local t = s .. 'y' end", {}, limits)
+          .error,
+      HasSubstr("takes more than 20,000,000 steps"));
+  limits.seconds = 0.2;
+  limits.steps = lua::Limits().steps;
+  EXPECT_THAT(run_lua("while true do end", {}, limits).error,
+              HasSubstr("takes more than 0.20 s of processor time"));
+}
+
 TEST(LuaSandbox, LimitsAreNotCaught) {
   const char* const too_long = "takes more than 5,000,000 steps";
   for (const char* script : {
@@ -102,6 +116,8 @@ TEST(LuaSandbox, PatternsThatWouldTryForEverAreRefused) {
   EXPECT_THAT(attack("for _ in string.gmatch(('a'):rep(3000), '.*.*.*b') do end"),
               HasSubstr(refused));
   EXPECT_THAT(attack("string.find(('('):rep(60000), '%b()%b()')"), HasSubstr(refused));
+  EXPECT_THAT(attack("string.find(('a'):rep(40000), 'a*b')"), HasSubstr(refused))
+      << "a search begins anywhere";
   EXPECT_EQ(lua_value("v = ('  a b  '):match('^%s*(.-)%s*$')"), "v: a b\n");
   EXPECT_EQ(lua_value("v = 0 for x in ('1 2 3'):gmatch('%d+') do v = v + x end"), "v: 6\n");
 }

@@ -180,7 +180,8 @@ TEST(LuaParameters, AJobSetsThem) {
               HasSubstr("unknown key 'sets' of include, did you mean 'set'?"));
   EXPECT_THAT(job_complaints("include: {lua: s.lua, set: {n: [1]}}\n", files),
               HasSubstr("parameter n is a list of 1, expected a number, a text, true or false"));
-  EXPECT_THAT(job_complaints("include: {set: {n: 1}}\n", files), HasSubstr("lua is missing"));
+  EXPECT_THAT(job_complaints("include: {set: {n: 1}}\n", files),
+              HasSubstr("include is a map, expected a file name, {lua: script.lua,"));
 }
 
 TEST(LuaFrames, WhatDiffersBecomesKeys) {

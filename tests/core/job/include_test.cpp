@@ -140,8 +140,10 @@ TEST(Include, WhatIsNoMapIsRefused) {
   EXPECT_NE(read_including("hyades: 1\ninclude: bad.yaml\n", assets)
                 .complaints.find("bad.yaml:2:1: not valid"),
             std::string::npos);
-  EXPECT_EQ(read_including("hyades: 1\ninclude: {a: b}\n", assets).complaints,
-            "job.yaml:2:10: include is a map, expected a file name or a list of them\n");
+  EXPECT_EQ(
+      read_including("hyades: 1\ninclude: {a: b}\n", assets).complaints,
+      "job.yaml:2:10: include is a map, expected a file name, {lua: script.lua, set: {...}} or "
+      "a list of them\n");
 }
 
 TEST(Like, CopiesKeysThatAreNotOverridden) {
