@@ -14,13 +14,13 @@ local t = {}
 for i = 1, n do t["b" .. i] = {shape = "sphere", at = {rnd(), rnd(5), rnd(-2, 2)}} end
 for k, v in pairs(t) do v.radius = #k + 0.5 end
 return {objects = t, camera = {fov = {keys = {[1] = 20, [4] = 30}}}})",
-      R"(local p = include("p.lua")
+      R"(local p = include("p.lua", param("n", 1))
 local ok, e = pcall(error, {1})
 local s = string.format("%5.2f %s", math.sin(time()), tostring(ok)):gsub("%d+", "x")
 local list = {{at = {1, 2, 3}, scale = 2, rotate_x = 4}, {rotate_z = frame()}}
 table.sort(list, function(a, b) return (a.scale or 0) < (b.scale or 0) end)
 return {name = s, objects = {a = {instance = p.name, places = places(list)}}, x = {next({1, a = 2})}})",
-      R"(local m = setmetatable({}, {__index = function(t, k) return k * 2 end, __close = print})
+      R"(local n, m = param("n", 0.5), setmetatable({}, {__index = function(t, k) return k * 2 end, __close = print})
 goto done
 do local x <close> = m end
 ::done::
