@@ -47,6 +47,7 @@ MapReader::MapReader(ReadContext& context, const YamlNode& map, std::string what
       what_(std::move(what)),
       path_(std::move(path)),
       section_(std::move(section)),
+      type_(section_),
       where_(map.where) {
   if (map.kind != YamlNode::Kind::map) {
     complain(where_, (what_.empty() ? "the job" : what_) + " is " + describe(map) +
@@ -57,7 +58,17 @@ MapReader::MapReader(ReadContext& context, const YamlNode& map, std::string what
 
 void MapReader::ask(std::string_view key) {
   asked_.emplace_back(key);
-  if (listing()) context_.listing->insert({section_, std::string(key)});
+  if (listing()) context_.listing->at(type_, {section_, std::string(key)});
+}
+
+void MapReader::tell(std::string_view key, KeyFacts facts) {
+  KeyFacts& known = context_.listing->at(type_, {section_, std::string(key)});
+  facts.required |= known.required;
+  known = std::move(facts);
+}
+
+void MapReader::forget_start(std::string_view key) {
+  if (listing()) context_.listing->at(type_, {section_, std::string(key)}).start.clear();
 }
 
 const YamlNode* MapReader::find(std::string_view key) { return find(key, ""); }
@@ -85,17 +96,23 @@ bool MapReader::has(std::string_view key) const {
 }
 
 void MapReader::require(std::string_view key, std::string_view expected) {
+  if (listing()) context_.listing->at(type_, {section_, std::string(key)}).required = true;
   if (map_.find(key) != nullptr || listing() || map_.kind != YamlNode::Kind::map) return;
   complain(where_, fmt::format("{} has no '{}', expected {}", what_.empty() ? "the job" : what_,
                                key, expected));
 }
 
 void MapReader::number(std::string_view key, float& target, const Range& range) {
+  if (listing()) tell(key, {.takes = "number", .start = json_of(target), .range = range});
   if (const YamlNode* node = find(key))
     read_number({context_, std::string(key), range}, *node, target);
 }
 
 void MapReader::integer(std::string_view key, int32_t& target, int64_t low, int64_t high) {
+  if (listing())
+    tell(key, {.takes = "whole number",
+               .start = std::to_string(target),
+               .range = {double(low), double(high)}});
   int64_t value = 0;
   const YamlNode* node = find(key);
   if (node != nullptr && read_integer({context_, std::string(key), {}}, *node, low, high, value)) {
@@ -104,6 +121,10 @@ void MapReader::integer(std::string_view key, int32_t& target, int64_t low, int6
 }
 
 void MapReader::integer(std::string_view key, uint32_t& target, int64_t low, int64_t high) {
+  if (listing())
+    tell(key, {.takes = "whole number",
+               .start = std::to_string(target),
+               .range = {double(low), double(high)}});
   int64_t value = 0;
   const YamlNode* node = find(key);
   if (node != nullptr && read_integer({context_, std::string(key), {}}, *node, low, high, value)) {
@@ -112,6 +133,10 @@ void MapReader::integer(std::string_view key, uint32_t& target, int64_t low, int
 }
 
 void MapReader::integer(std::string_view key, uint64_t& target) {
+  if (listing())
+    tell(key, {.takes = "whole number",
+               .start = std::to_string(target),
+               .range = {0.0, 0x1p64, false, true}});
   const YamlNode* node = find(key);
   if (node == nullptr) return;
   uint64_t value = 0;
@@ -126,6 +151,7 @@ void MapReader::integer(std::string_view key, uint64_t& target) {
 }
 
 void MapReader::flag(std::string_view key, bool& target) {
+  if (listing()) tell(key, {.takes = "switch", .start = json_of(target)});
   const YamlNode* node = find(key);
   if (node == nullptr) return;
   if (node->kind == YamlNode::Kind::scalar && !node->quoted &&
@@ -137,6 +163,7 @@ void MapReader::flag(std::string_view key, bool& target) {
 }
 
 void MapReader::text(std::string_view key, std::string& target, std::string_view expected) {
+  if (listing()) tell(key, {.takes = "text", .start = json_of(target)});
   const YamlNode* node = find(key);
   if (node == nullptr) return;
   if (node->kind == YamlNode::Kind::scalar && node->scalar.find('\n') != std::string::npos) {
@@ -150,6 +177,8 @@ void MapReader::text(std::string_view key, std::string& target, std::string_view
 
 void MapReader::choice(std::string_view key, std::string& target,
                        std::span<const std::string> names) {
+  if (listing())
+    tell(key, {.takes = "choice", .start = json_of(target), .names = {names.begin(), names.end()}});
   const YamlNode* node = find(key);
   if (node == nullptr) return;
   const bool known = node->kind == YamlNode::Kind::scalar &&
@@ -166,6 +195,7 @@ void MapReader::name_of(std::string_view key, std::string& target, NameKind kind
                                        "an object's name", "a medium's name"};
   std::string name;
   text(key, name, kNouns[static_cast<int>(kind)]);
+  if (listing()) tell(key, {.takes = kNouns[static_cast<int>(kind)]});
   if (name.empty()) return;
   target = name;
   const std::string label = what_.empty() ? std::string(key) : fmt::format("{} of {}", key, what_);
@@ -175,6 +205,7 @@ void MapReader::name_of(std::string_view key, std::string& target, NameKind kind
 void MapReader::file(std::string_view key, std::string& target) {
   std::string name;
   text(key, name, "a file name");
+  if (listing()) tell(key, {.takes = "file"});
   if (name.empty()) return;
   const SourceLocation where = where_of(key);
   target = context_.job_relative(name, where);
@@ -184,10 +215,12 @@ void MapReader::file(std::string_view key, std::string& target) {
 void MapReader::mesh_file(std::string_view key, std::string& target) {
   const size_t before = context_.files.size();
   file(key, target);
+  if (listing()) tell(key, {.takes = "mesh file"});
   if (context_.files.size() > before) context_.files.back().per_frame = true;
 }
 
 bool MapReader::numbers(std::string_view key, std::span<float> target, const Range& range) {
+  if (listing()) tell(key, {.takes = fmt::format("{} numbers", target.size()), .range = range});
   const YamlNode* node = find(key);
   if (node == nullptr) return false;
   if (node->kind != YamlNode::Kind::list || node->list.size() != target.size()) {
@@ -204,6 +237,10 @@ bool MapReader::numbers(std::string_view key, std::span<float> target, const Ran
 
 bool MapReader::integers(std::string_view key, std::span<int32_t> target, int64_t low,
                          int64_t high) {
+  if (listing())
+    tell(key, {.takes = fmt::format("{} whole numbers", target.size()),
+               .start = fmt::format("[{}]", fmt::join(target, ", ")),
+               .range = {double(low), double(high)}});
   const YamlNode* node = find(key);
   if (node == nullptr) return false;
   if (node->kind != YamlNode::Kind::list || node->list.size() != target.size()) {
@@ -224,24 +261,28 @@ bool MapReader::integers(std::string_view key, std::span<int32_t> target, int64_
 }
 
 void MapReader::animated(std::string_view key, Animated<float>& target, const Range& range) {
+  if (listing()) tell(key, {.takes = "number, animated", .start = json_of(target), .range = range});
   const YamlNode* node = find(key);
   if (node == nullptr) return;
   if (read_animated_number({context_, std::string(key), range}, *node, target)) note(key, target);
 }
 
 void MapReader::animated(std::string_view key, Animated<Vec2>& target, const Range& range) {
+  if (listing()) tell(key, {.takes = "pair, animated", .start = json_of(target), .range = range});
   const YamlNode* node = find(key);
   if (node == nullptr) return;
   if (read_animated_pair({context_, std::string(key), range}, *node, target)) note(key, target);
 }
 
 void MapReader::animated(std::string_view key, Animated<Vec3>& target, const Range& range) {
+  if (listing()) tell(key, {.takes = "vector, animated", .start = json_of(target), .range = range});
   const YamlNode* node = find(key);
   if (node == nullptr) return;
   if (read_animated_vector({context_, std::string(key), range}, *node, target)) note(key, target);
 }
 
 void MapReader::direction(std::string_view key, Animated<Vec3>& target) {
+  if (listing()) tell(key, {.takes = "vector, animated", .start = json_of(target)});
   const YamlNode* node = find(key);
   if (node == nullptr) return;
   const std::string name(key);
@@ -255,6 +296,7 @@ void MapReader::direction(std::string_view key, Animated<Vec3>& target) {
 void MapReader::direction(std::string_view key, std::optional<Animated<Vec3>>& target) {
   Animated<Vec3> value(Vec3(0.0F, 1.0F, 0.0F));
   direction(key, value);
+  forget_start(key);
   if (has(key)) target = value;
 }
 
@@ -269,6 +311,7 @@ void MapReader::keep_apart(std::string_view a_key, const Animated<Vec3>& a, std:
 }
 
 void MapReader::rotation(std::string_view key, Animated<Vec4>& target) {
+  if (listing()) tell(key, {.takes = "quaternion"});
   const YamlNode* node = find(key);
   if (node == nullptr) return;
   if (read_animated_rotation({context_, std::string(key), kAnyNumber}, *node, target))
@@ -276,12 +319,16 @@ void MapReader::rotation(std::string_view key, Animated<Vec4>& target) {
 }
 
 void MapReader::animated_scale(std::string_view key, Animated<Vec3>& target, const Range& range) {
+  if (listing()) tell(key, {.takes = "scale, animated", .start = json_of(target), .range = range});
   const YamlNode* node = find(key);
   if (node == nullptr) return;
   if (read_animated_scale({context_, std::string(key), range}, *node, target)) note(key, target);
 }
 
 void MapReader::color(std::string_view key, Animated<Rgb>& target, const Range& range) {
+  if (listing())
+    tell(key,
+         {.takes = "colour, animated", .start = json_of_color(target.constant), .range = range});
   const YamlNode* node = find_color(key);
   if (node == nullptr) return;
   if (read_animated_color({context_, std::string(key), range}, *node, target)) note(key, target);
@@ -289,6 +336,7 @@ void MapReader::color(std::string_view key, Animated<Rgb>& target, const Range& 
 
 void MapReader::color(std::string_view key, std::optional<Animated<Rgb>>& target,
                       const Range& range) {
+  if (listing()) tell(key, {.takes = "colour, animated", .range = range});
   if (find(key) == nullptr) return;
   Animated<Rgb> value(Rgb(1.0F));
   color(key, value, range);
@@ -296,6 +344,10 @@ void MapReader::color(std::string_view key, std::optional<Animated<Rgb>>& target
 }
 
 void MapReader::color_input(std::string_view key, ColorInput& target, const Range& range) {
+  if (listing())
+    tell(key, {.takes = "colour or texture",
+               .start = json_of_color(target.value.constant),
+               .range = range});
   const YamlNode* node = find_color(key);
   if (node == nullptr) return;
   if (read_texture_input(*this, key, *node, target.texture)) return;
@@ -306,6 +358,8 @@ void MapReader::color_input(std::string_view key, ColorInput& target, const Rang
 }
 
 void MapReader::scalar_input(std::string_view key, ScalarInput& target, const Range& range) {
+  if (listing())
+    tell(key, {.takes = "number or texture", .start = json_of(target.value), .range = range});
   const YamlNode* node = find(key);
   if (node == nullptr) return;
   if (read_texture_input(*this, key, *node, target.texture)) return;
@@ -319,6 +373,7 @@ void MapReader::color_input(std::string_view key, std::optional<ColorInput>& tar
                             const Range& range) {
   ColorInput value;
   color_input(key, value, range);
+  forget_start(key);
   if (has(key)) target = value;
 }
 
@@ -326,12 +381,14 @@ void MapReader::scalar_input(std::string_view key, std::optional<ScalarInput>& t
                              const Range& range) {
   ScalarInput value;
   scalar_input(key, value, range);
+  forget_start(key);
   if (has(key)) target = value;
 }
 
 void MapReader::texture(std::string_view key, std::string& target) {
   const char* const expected = "a texture's name or a texture";
   require(key, expected);
+  if (listing()) tell(key, {.takes = "texture"});
   const YamlNode* node = find(key);
   if (node != nullptr && !read_texture_input(*this, key, *node, target)) {
     mismatch(key, *node, expected);
@@ -340,6 +397,7 @@ void MapReader::texture(std::string_view key, std::string& target) {
 
 void MapReader::map(std::string_view key, const std::string& section,
                     const std::function<void(MapReader&)>& read) {
+  if (listing()) tell(key, {.takes = "map", .below = section});
   const YamlNode* node = find(key);
   if (node == nullptr && !listing()) return;
   const std::string name = what_.empty() ? std::string(key) : fmt::format("{} of {}", key, what_);
@@ -379,10 +437,12 @@ bool read_by_type(MapReader& reader, std::string_view key, const std::string& se
                   const std::function<void(size_t)>& read) {
   const std::string expected = "one of " + join_names(names);
   if (type.empty()) reader.require(key, expected);
+  if (reader.listing())
+    reader.tell(key, {.takes = "choice", .names = {names.begin(), names.end()}});
   const YamlNode* node = reader.find(key);
   if (reader.listing()) {
     for (size_t i = 0; i < names.size(); ++i) {
-      reader.enter_section(section + "." + names[i]);
+      reader.enter_type(section + "." + names[i]);
       read(i);
     }
     return true;

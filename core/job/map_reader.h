@@ -45,6 +45,10 @@ class MapReader {
 
   /// From here on, keys asked for belong to this section of the reference.
   void enter_section(std::string section) { section_ = std::move(section); }
+  /// As enter_section, and they are those of this type; for listings of keys.
+  void enter_type(const std::string& type) { section_ = type_ = type; }
+  /// What `key` takes, where keys are listed (listing()); most calls below say it themselves.
+  void tell(std::string_view key, KeyFacts facts);
 
   /// `key` is known, but somebody else reads it.
   void leave_to_others(std::string_view key) { ask(key); }
@@ -109,6 +113,7 @@ class MapReader {
   void animated(std::string_view key, std::optional<Animated<T>>& target, const Range& range) {
     Animated<T> value;
     animated(key, value, range);
+    forget_start(key);
     if (has(key)) target = value;
   }
   /// A vector that may move; complains where it is [0, 0, 0] at a frame.
@@ -162,12 +167,17 @@ class MapReader {
   void map_beside_value(std::string_view key, const std::string& section,
                         std::optional<Desc>& desc) {
     if (is_map_of_keys(find(key)) || listing()) map(key, section, desc);
+    if (listing()) tell(key, {.takes = "colour or map", .below = section});
   }
   /// A map, or in its place desc.color alone.
   template <class Desc>
   void color_or_map(std::string_view key, const std::string& section, std::optional<Desc>& desc,
                     const Range& range) {
-    if (is_map_of_keys(find_color(key)) || listing()) return map(key, section, desc);
+    if (is_map_of_keys(find_color(key)) || listing()) {
+      map(key, section, desc);
+      if (listing()) tell(key, {.takes = "colour or map", .range = range, .below = section});
+      return;
+    }
     Animated<Rgb> value(Rgb(0.0F));
     color(key, value, range);
     if (!has(key)) return;
@@ -180,8 +190,10 @@ class MapReader {
                    std::span<const std::string> types) {
     const YamlNode* node = find(key);
     const bool is_map = node != nullptr && node->kind == YamlNode::Kind::map;
-    if (is_map || listing()) return map(key, section, desc);
-    if (node == nullptr) return;
+    if (is_map || listing()) map(key, section, desc);
+    if (listing())
+      tell(key, {.takes = "type or map", .names = {types.begin(), types.end()}, .below = section});
+    if (is_map || node == nullptr) return;
     choice(key, desc.type, types);
     MapReader inner(context_, empty_map(), what_, path_, section);
     read_fields(inner, desc);
@@ -194,6 +206,7 @@ class MapReader {
               const Range& b_range, Unit& unit, Animated<float>& value) {
     animated(a_key, value, a_range);
     animated(b_key, value, b_range);
+    forget_start(b_key);
     if (has(b_key)) unit = static_cast<Unit>(1);
   }
   /// Materials and those that stand in for them; both may be new ones.
@@ -216,6 +229,8 @@ class MapReader {
   /// Whether it is a map, but not one of values over time.
   static bool is_map_of_keys(const YamlNode* node);
   void ask(std::string_view key);
+  /// Where keys are listed only: `key` may be absent.
+  void forget_start(std::string_view key);
   const YamlNode* find(std::string_view key, std::string_view hint);
   /// Finds the node of a colour; where it is empty, the complaint tells of the commonest reason.
   const YamlNode* find_color(std::string_view key);
@@ -232,6 +247,7 @@ class MapReader {
   std::string what_;
   std::string path_;
   std::string section_;
+  std::string type_;  ///< the type whose keys are read; where none is told apart, the section
   SourceLocation where_;
   std::vector<std::string> asked_;
   bool has_empty_ = false;

@@ -37,6 +37,8 @@ void check_keys(MapReader& reader, CameraDesc& camera) {
 
 void MapReader::focus(std::string_view key, std::optional<Animated<float>>& distance,
                       std::string& object, SourceLocation& where) {
+  if (listing())
+    tell(key, {.takes = "number, animated, or an object's name", .range = kPositive.in("length")});
   const YamlNode* node = find(key);
   if (node == nullptr) return;
   double number = 0.0;

@@ -10,7 +10,7 @@
 #include "core/base/assets.h"
 #include "core/job/fields.h"
 #include "core/job/job.h"
-#include "core/job/job_keys.h"
+#include "core/job/key_listing.h"
 #include "core/job/source.h"
 #include "core/job/yaml_tree.h"
 
@@ -49,7 +49,7 @@ struct ReadContext {
   std::map<std::string, std::string> included;
   std::map<std::string, YamlPtr> materials;  ///< as written, `like` followed; for overrides
   bool files_missing = false;                ///< files that names may stand in could not be read
-  std::set<JobKey>* listing = nullptr;       ///< set: only collect which keys the readers know
+  KeyListing* listing = nullptr;             ///< set: only collect which keys the readers know
 
   /// Adds a complaint, once (a node that `like:` or an alias shares is read several times).
   void complain(const SourceLocation& where, const std::string& message);

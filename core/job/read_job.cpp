@@ -2,11 +2,15 @@
 
 #include <array>
 #include <set>
+#include <string>
+#include <vector>
 
 #include "core/base/text.h"
 #include "core/job/job_keys.h"
+#include "core/job/key_listing.h"
 #include "core/job/layers.h"
 #include "core/job/output_names.h"
+#include "core/job/read_components.h"
 #include "core/job/read_sections.h"
 #include "core/job/read_values.h"
 
@@ -29,6 +33,12 @@ constexpr std::array<UnitRow, 6> kUnits = {{
     {"ft", 0.3048F},
 }};
 
+std::vector<std::string> unit_names() {
+  std::vector<std::string> names;
+  for (const UnitRow& unit : kUnits) names.emplace_back(unit.name);
+  return names;
+}
+
 void read_version(MapReader& top) {
   top.require("hyades", "the version of the job language: hyades: 1");
   const YamlNode* node = top.find("hyades");
@@ -38,6 +48,7 @@ void read_version(MapReader& top) {
 }
 
 void read_name(MapReader& top, Job& job) {
+  if (top.listing()) top.tell("name", {.takes = "text"});
   const YamlNode* node = top.find("name");
   if (node == nullptr) return;
   if (node->kind == YamlNode::Kind::scalar && is_valid_name(node->scalar)) {
@@ -48,6 +59,9 @@ void read_name(MapReader& top, Job& job) {
 }
 
 void read_units(MapReader& top, Job& job) {
+  if (top.listing())
+    top.tell("units",
+             {.takes = "units", .start = "\"m\"", .range = {1e-12, 1e12}, .names = unit_names()});
   const YamlNode* node = top.find("units");
   if (node == nullptr) return;
   for (const UnitRow& unit : kUnits) {
@@ -92,6 +106,7 @@ void check_noise(MapReader& top, const Job& job) {
 void read_job(MapReader& top, Job& job) {
   read_version(top);
   top.leave_to_others("include");  // already merged, see load_job_tree
+  if (top.listing()) top.tell("include", {.takes = "files"});
   read_name(top, job);
   read_units(top, job);
   read_frames(top, job.frames);
@@ -116,17 +131,24 @@ void read_job(MapReader& top, Job& job) {
   top.finish();
 }
 
-std::set<JobKey> known_job_keys() {
+std::vector<ListedKey> listed_job_keys() {
   Job job;
   Diagnostics ignored;
   ReadContext context(job, ignored);
-  std::set<JobKey> keys;
-  context.listing = &keys;
+  KeyListing listing;
+  context.listing = &listing;
   MapReader top(context, empty_map(), "", "", "job");
   read_job(top, job);
-  keys.insert({"animation", "keys"});
-  keys.insert({"animation", "ease"});
-  keys.insert({"animation", "repeat"});
+  MapReader keys(context, empty_map(), "", "", "animation");
+  keys.tell("keys", {.takes = "keys", .required = true});
+  read_ease(keys);
+  read_repeat(keys);
+  return listing.keys();
+}
+
+std::set<JobKey> known_job_keys() {
+  std::set<JobKey> keys;
+  for (const ListedKey& key : listed_job_keys()) keys.insert(key.id);
   return keys;
 }
 

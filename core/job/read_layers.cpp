@@ -46,6 +46,8 @@ bool check_layer(MapReader& reader, const YamlNode& item) {
 
 void read_layers(MapReader& reader, OutputDesc& output) {
   output.layers = {"beauty", "alpha"};
+  if (reader.listing())
+    reader.tell("layers", {.takes = "texts", .start = R"(["beauty", "alpha"])"});
   const YamlNode* node = reader.find("layers");
   if (node == nullptr) return;
   if (node->kind != YamlNode::Kind::list || node->list.empty()) {

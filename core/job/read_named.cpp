@@ -22,10 +22,11 @@ void read_named(MapReader& parent, std::string_view key, const std::string& noun
     MapReader reader(parent.context(), node, what, where, std::string(key));
     if (node.kind != YamlNode::Kind::map) return;
     reader.leave_to_others("like");  // resolve_likes
+    if (reader.listing()) reader.tell("like", {.takes = "text"});
     read(reader, name);
   };
   if (parent.listing()) {
-    parent.find(key);
+    parent.tell(key, {.takes = "entries", .below = std::string(key)});
     read_one(empty_map(), noun, noun, path);
     return;
   }

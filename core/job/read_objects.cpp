@@ -68,16 +68,34 @@ std::string read_shape(MapReader& reader) {
   return shape;
 }
 
+/// Scenes of other tools are read elsewhere (scene_objects.h); what is left of them are groups.
+void list_scene_keys(MapReader& reader) {
+  ObjectDesc scene;
+  for (const char* kind : {"gltf", "pbrt", "obj"}) {
+    reader.enter_type(std::string("objects.") + kind);
+    ObjectDesc::fields(scene, reader);
+    reader.enter_section("objects");
+    reader.tell(kind, {.takes = "file", .required = true});
+    if (kind != std::string_view("gltf")) continue;
+    reader.tell("animation", {.takes = "text"});
+    reader.tell("loop", {.takes = "switch", .start = "false"});
+  }
+}
+
 void list_keys(MapReader& reader) {
-  for (const char* scene : {"gltf", "pbrt", "obj", "animation", "loop"})
-    reader.leave_to_others(scene);
-  for (const char* kind : kKinds) reader.leave_to_others(kind);
   ObjectDesc object;
+  reader.tell("shape", {.takes = "choice", .names = {kShapeNames.begin(), kShapeNames.end()}});
   for (const char* shape :
        {"sphere", "rectangle", "disk", "box", "cylinder", "mesh", "instance", "group"}) {
     object.shape = shape;
+    reader.enter_type("objects." + object.shape);
     ObjectDesc::fields(object, reader);
+    reader.enter_section("objects");
+    for (const char* kind : {"mesh", "instance", "group"}) {
+      if (object.shape == kind) reader.require(kind, "");
+    }
   }
+  list_scene_keys(reader);
 }
 
 void read_object(MapReader& reader, std::vector<ObjectDesc>& objects, const std::string& name) {
@@ -104,7 +122,9 @@ void read_object_list(MapReader& reader, std::vector<ObjectDesc>& objects) {
 
 void MapReader::children(std::string_view key, std::vector<ObjectDesc>& children) {
   if (listing()) {
-    context_.listing->insert({"objects.group", "objects"});
+    tell(key, {.takes = "map", .below = "objects.group"});
+    context_.listing->at("objects.group", {"objects.group", "objects"}) = {.takes = "entries",
+                                                                           .below = "objects"};
     return;
   }
   map(key, "objects.group", [&](MapReader& group) { read_object_list(group, children); });
@@ -120,7 +140,7 @@ void read_groups(MapReader& top) {
                group.where = reader.where();
                reader.require("objects", "a map of objects");
                if (reader.listing()) {
-                 reader.leave_to_others("objects");
+                 reader.tell("objects", {.takes = "entries", .below = "objects"});
                  return;
                }
                read_object_list(reader, group.objects);

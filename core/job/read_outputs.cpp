@@ -29,6 +29,7 @@ void read_picture(MapReader& reader, OutputDesc& output) {
                     "tone_map stands beside 'color', whose configuration makes the display values; "
                     "expected one of them");
   }
+  if (reader.listing()) reader.tell("layer", {.takes = "text", .start = "\"beauty\""});
   const YamlNode* layer = reader.find("layer");
   if (layer != nullptr && check_layer(reader, *layer)) {
     if (unfolded(layer->scalar).size() > 1 || layer->scalar == "light_groups") {
@@ -113,7 +114,7 @@ void read_output(MapReader& reader, Job& job) {
   reader.choice("denoise", output.denoise, denoise_names());
   if (reader.listing()) {
     for (const FormatRow& row : kFormats) {
-      reader.enter_section(row.section);
+      reader.enter_type(row.section);
       if (row.read != nullptr) row.read(reader, output);
     }
     return;
@@ -169,6 +170,7 @@ void add_default_outputs(Job& job, float exposure) {
 void read_outputs(MapReader& top, Job& job) {
   const YamlNode* node = top.find("outputs");
   if (top.listing()) {
+    top.tell("outputs", {.takes = "list", .below = "outputs"});
     MapReader reader(top.context(), empty_map(), "", "", "outputs");
     read_output(reader, job);
     return;

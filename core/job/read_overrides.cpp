@@ -13,6 +13,7 @@ namespace hyades::core {
 
 void MapReader::overrides(std::string_view key,
                           std::vector<std::pair<std::string, std::string>>& overrides) {
+  if (listing()) tell(key, {.takes = "overrides", .below = "materials"});
   const YamlNode* all = find(key);
   if (all == nullptr) return;
   if (all->kind != YamlNode::Kind::map) {

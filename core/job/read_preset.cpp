@@ -17,6 +17,7 @@ constexpr const char* kBrought[] = {
 void MapReader::preset(std::string_view key, MediumDesc& medium) {
   std::string name;
   text(key, name, "the name of a measured material");
+  if (listing()) tell(key, {.takes = "choice", .names = measured_medium_names()});
   if (name.empty()) return;
   const MeasuredMedium* const measured = find_measured_medium(name);
   if (measured == nullptr) {

@@ -78,6 +78,7 @@ void read_frames(MapReader& top, FramesDesc& frames) {
     const std::string expected =
         fmt::format("a frame or range such as 7, 1-120 or 1-120x2, up to {}", kLastFrame);
     reader.text(key, text, expected);
+    if (reader.listing()) reader.tell(key, {.takes = "frames", .start = "\"1\""});
     if (text.empty() || parse_range(text, frames)) return;
     const std::string turned = turned_round(text);
     reader.mismatch(key, *reader.find(key),
@@ -93,19 +94,24 @@ void read_frames(MapReader& top, FramesDesc& frames) {
     reader.number("fps", frames.fps, {0.0, 1e6, true});
     reader.number("shutter", frames.shutter, kUnitInterval);
   });
+  if (top.listing()) top.tell("frames", {.takes = "frames or map", .below = "frames"});
 }
 
 void MapReader::integers(std::string_view key, const char* /*a_line*/, int32_t& a,
                          const char* /*b_line*/, int32_t& b, int64_t low, int64_t high) {
   std::array<int32_t, 2> both = {a, b};
-  if (!integers(key, both, low, high)) return;
+  const bool read = integers(key, both, low, high);
+  if (a < low) forget_start(key);
+  if (!read) return;
   a = both[0];
   b = both[1];
 }
 
 void MapReader::crop(std::string_view key, FilmDesc& film) {
   std::array<int32_t, 4> edges = {0, 0, 1, 1};
-  if (!integers(key, edges, 0, 65536)) return;
+  const bool read = integers(key, edges, 0, 65536);
+  forget_start(key);
+  if (!read) return;
   const PixelRect crop{edges[0], edges[1], edges[2], edges[3]};
   if (crop.empty() || !PixelRect{0, 0, film.width, film.height}.contains(crop)) {
     return complain(where_of(key),

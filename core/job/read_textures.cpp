@@ -18,6 +18,10 @@ void MapReader::choices(std::string_view key, std::string& first, const char* /*
   const YamlNode* node = find(key);
   if (node == nullptr || node->kind != YamlNode::Kind::list) {
     choice(key, first, names);
+    if (listing())
+      tell(key, {.takes = "one or two choices",
+                 .start = json_of(first),
+                 .names = {names.begin(), names.end()}});
     second = first;
     return;
   }
@@ -35,6 +39,7 @@ void MapReader::choices(std::string_view key, std::string& first, const char* /*
 }
 
 void MapReader::stops(std::string_view key, std::vector<textures::Stop>& stops) {
+  if (listing()) tell(key, {.takes = "stops", .range = kNotNegative});
   const YamlNode* node = find(key);
   if (node == nullptr) return;
   if (node->kind != YamlNode::Kind::map || node->map.size() < 2) {

@@ -18,10 +18,9 @@ namespace {
 void read_matrix(MapReader& reader, std::string_view key, Mat4& matrix) {
   std::array<float, 16> rows{};
   for (size_t i = 0; i < 16; i += 5) rows[i] = 1.0F;
-  const YamlNode* node = reader.find(key);
-  if (node == nullptr || !reader.numbers(key, rows, kAnyNumber)) return;
+  if (!reader.numbers(key, rows, kAnyNumber)) return;
   if (rows[12] != 0.0F || rows[13] != 0.0F || rows[14] != 0.0F || rows[15] != 1.0F) {
-    reader.complain(node->where,
+    reader.complain(reader.where_of(key),
                     "matrix has another last row than 0, 0, 0, 1 (16 numbers, row by row)");
     return;
   }
@@ -117,6 +116,7 @@ void MapReader::place(TransformList& steps, Animated<Vec3>& at) {
 }
 
 void MapReader::transform(std::string_view key, TransformList& target) {
+  if (listing()) tell(key, {.takes = "list of steps", .below = "transform"});
   const YamlNode* node = find(key);
   if (listing()) {
     MapReader step_reader(context_, empty_map(), "", "", "transform");
