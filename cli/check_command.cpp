@@ -9,6 +9,7 @@
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
 
 #include "cli/command_line.h"
 #include "cli/film_room.h"
@@ -100,6 +101,7 @@ struct CheckOptions {
   std::string path;
   std::string curve;  ///< empty: the job is summed up
   bool no_probe = false;
+  bool files = false;
   SceneOptions scene;
 };
 
@@ -113,6 +115,9 @@ std::optional<int> parse_check_options(int argc, char** argv, CheckOptions& opti
   app.add_option("--curve", options.curve,
                  "print this value of the job over its frames instead: camera.fov, "
                  "objects.NAME.at, objects.NAME.transform[0].rotate_y, materials.NAME.color, ...");
+  app.add_flag("--files", options.files,
+               "print the files that the job is read from instead, as JSON: its text first, then "
+               "what it names, relative to its folder");
   app.add_flag("--no-probe", options.no_probe, "do not render a few pixels to estimate the time");
   app.footer(
       "examples:\n  hyades check jobs/cornell/job.yaml\nexit status: 0 good, 2 mistakes found");
@@ -125,6 +130,20 @@ core::Status print_curve(const core::Job& job, const std::string& name) {
   const auto found = core::find_curve(job, name);
   if (!found) return found.error().in("hyades check");
   std::fputs(core::curve_table(job, **found).c_str(), stdout);
+  return {};
+}
+
+/// Every file that travels with the job, for programs that bring it to a farm.
+core::Status print_files(const LoadedJob& loaded) {
+  core::RecordingResolver text(loaded.files->files());
+  if (const auto opened = text.open(loaded.files->document()); !opened) return opened.error();
+  std::vector<core::AssetRecord> all = text.records();
+  for (const core::AssetRecord& asset : loaded.assets->records()) all.push_back(asset);
+  nlohmann::ordered_json list = nlohmann::ordered_json::array();
+  for (const core::AssetRecord& file : all) {
+    list.push_back({{"path", file.reference}, {"sha256", file.sha256}, {"size", file.size}});
+  }
+  std::printf("%s\n", list.dump(2, ' ', false, nlohmann::json::error_handler_t::replace).c_str());
   return {};
 }
 
@@ -227,12 +246,15 @@ int check_command(int argc, char** argv) {
   auto loaded = read_job_file(options.path, diagnostics, options.scene);
   if (!loaded) return kBadInput;
   core::SceneCache cache(*loaded->assets);
-  core::Status done = read_contents(*loaded, cache, diagnostics);
+  core::Status done;
+  if (!options.files) done = read_contents(*loaded, cache, diagnostics);
   if (done && !diagnostics.empty()) {
     std::fputs(diagnostics.to_string().c_str(), stderr);
     return kBadInput;
   }
-  if (done) {
+  if (done && options.files) {
+    done = print_files(*loaded);
+  } else if (done) {
     done = options.curve.empty() ? print_summary(options, loaded->job, cache)
                                  : print_curve(loaded->job, options.curve);
   }

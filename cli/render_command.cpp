@@ -1,6 +1,5 @@
 #include <unistd.h>
 
-#include <algorithm>
 #include <chrono>
 #include <cstdint>
 #include <cstdio>
@@ -20,6 +19,7 @@
 #include "cli/frame_range.h"
 #include "cli/interrupt.h"
 #include "cli/job_frames.h"
+#include "cli/json_report.h"
 #include "cli/load_job.h"
 #include "cli/output_note.h"
 #include "cli/progress_display.h"
@@ -63,14 +63,13 @@ void print_bad_samples(const RunTotals& totals, const std::string& path) {
   }
 }
 
-/// The first of `numbers` whose outputs are there.
-std::optional<int32_t> first_written(const std::vector<int32_t>& numbers,
-                                     const coordinator::LocalOutcome& outcome) {
+/// Those of `numbers` whose outputs are there.
+std::vector<int32_t> written_frames(std::vector<int32_t> numbers,
+                                    const coordinator::LocalOutcome& outcome) {
   std::set<int32_t> failed;
   for (const coordinator::FrameFailure& failure : outcome.failures) failed.insert(failure.frame);
-  const auto first = std::find_if(numbers.begin(), numbers.end(),
-                                  [&](int32_t frame) { return !failed.contains(frame); });
-  return first == numbers.end() ? std::nullopt : std::optional(*first);
+  std::erase_if(numbers, [&](int32_t frame) { return failed.contains(frame); });
+  return numbers;
 }
 
 /// An interrupt is answered with how far the run has come.
@@ -91,7 +90,7 @@ void print_error(const RenderOptions& options, const FilmRoom& room, const std::
 
 int report(const RenderOptions& options, const FilmRoom& room, const JobFrames& frames,
            const std::vector<int32_t>& numbers, const coordinator::LocalOutcome& outcome,
-           const coordinator::Progress& progress) {
+           const coordinator::Progress& progress, const JsonReport& json) {
   const RunTotals totals = frames.totals();
   print_bad_samples(totals, options.path);
   for (const coordinator::FrameFailure& failure : outcome.failures) {
@@ -106,11 +105,12 @@ int report(const RenderOptions& options, const FilmRoom& room, const JobFrames& 
     std::fputs(interrupted_words(), stderr);
     return kInterrupted;
   }
-  const auto first = first_written(numbers, outcome);
-  if (!options.quiet && first && totals.counters.samples > 0) {
+  const std::vector<int32_t> written = written_frames(numbers, outcome);
+  for (const int32_t frame : written) json.written(frame, frames.output_paths(frame, false));
+  if (!options.quiet && !written.empty() && totals.counters.samples > 0) {
     const std::string others =
         outcome.frames_done > 1 ? fmt::format(" ... ({} frames)", outcome.frames_done) : "";
-    for (const std::string& path : frames.output_paths(*first, false)) {
+    for (const std::string& path : frames.output_paths(written.front(), false)) {
       std::fprintf(stderr, "wrote %s%s\n", path.c_str(), others.c_str());
     }
     const auto samples = static_cast<double>(totals.counters.samples);
@@ -175,7 +175,7 @@ coordinator::LocalPlan plan_of(const RenderOptions& options, const core::Job& jo
 
 /// Until the run has ended, shows how far it is; false where somebody interrupted it.
 bool follow(const RenderOptions& options, coordinator::LocalRun& run, const std::string& name,
-            Viewer* viewer) {
+            Viewer* viewer, JsonReport& json) {
   ProgressDisplay display(name, options.quiet);
   const auto tell_of_viewer = [&] {
     const auto notice = viewer != nullptr ? viewer->take_notice() : std::nullopt;
@@ -202,6 +202,7 @@ bool follow(const RenderOptions& options, coordinator::LocalRun& run, const std:
     const coordinator::Progress progress = run.progress();
     note_share(options, progress);
     display.update(progress);
+    json.progress(progress);
   }
   display.clear();
   tell_of_viewer();
@@ -232,11 +233,15 @@ void remove_kept(const RenderOptions& options, const std::string& kept) {
 
 /// Videos, and the removal of what is of no more use once all is written.
 int finish_run(const RenderOptions& options, const core::Job& job,
-               const std::vector<int32_t>& numbers, const std::string& kept) {
+               const std::vector<int32_t>& numbers, const std::string& kept,
+               const JsonReport& json) {
   const bool all_frames = core::are_all_frames(job, numbers);
   const bool videos = !job.videos.empty() && !options.is_part();
   if (videos && all_frames) {
     if (const auto failed = make_videos_of_run(options, job, numbers)) return *failed;
+    for (const core::VideoDesc& video : job.videos) {
+      json.written(std::nullopt, {options.folder + "/" + video.file});
+    }
   } else if (videos && !options.quiet) {
     note_no_videos(job, options.folder, options.path);
   }
@@ -303,11 +308,12 @@ int run_frames(const RenderOptions& options, const core::Job& job, const FilmRoo
     std::fprintf(stderr, "%s\n", problem.c_str());
   }
   if (!options.quiet) note_begun(run.progress());
-  const bool to_its_end = follow(options, run, job.name, viewer ? &*viewer : nullptr);
+  JsonReport json(options.json);
+  const bool to_its_end = follow(options, run, job.name, viewer ? &*viewer : nullptr, json);
   const coordinator::LocalOutcome outcome = run.outcome();
-  int status = report(options, room, frames, numbers, outcome, run.progress());
+  int status = report(options, room, frames, numbers, outcome, run.progress(), json);
   if (outcome.complete && outcome.failures.empty()) {
-    status = finish_run(options, job, numbers, kept);
+    status = finish_run(options, job, numbers, kept, json);
   }
   std::fflush(nullptr);
   // An orderly end waits for frames that are loading or finishing; after Ctrl-C nobody wants to.

@@ -205,6 +205,8 @@ void declare_results(CLI::App& app, RenderOptions& options) {
   app.add_flag("--overwrite", options.overwrite,
                "replace files that are there, whoever made them (default: those of this job)");
   app.add_flag("-q,--quiet", options.quiet, "show no progress");
+  app.add_flag("--json", options.json,
+               "for programs: print progress and what is written, a JSON object a line");
 }
 
 }  // namespace
@@ -248,6 +250,7 @@ std::optional<int> parse_render_options(int argc, char** argv, RenderOptions& op
   if (!words.tile.empty()) options.tile = *parse_tile(words.tile);
   options.film = !options.film_file.empty();
   if (options.film_file == "*") options.film_file.clear();
+  options.quiet |= options.json;
   return std::nullopt;
 }
 

@@ -34,6 +34,7 @@ struct RenderOptions {
   bool overwrite = false;  ///< also files that the job has not made
   bool keep_work = true;   ///< films are kept until all is written, for a run that is interrupted
   bool quiet = false;
+  bool json = false;  ///< tell programs of progress and files
   bool film = false;
   std::string film_file;  ///< where films go, #### for the frame; empty: the usual name
 
