@@ -1,0 +1,262 @@
+"""Whether a value is one that a key takes. What only a whole job shows is left to its reader."""
+
+from __future__ import annotations
+
+import math
+import os
+import re
+from collections.abc import Callable, Mapping, Sequence
+from typing import TYPE_CHECKING, Any
+
+from .errors import KeyRefused
+from .values import Keys
+
+if TYPE_CHECKING:
+    from .described import Key
+
+_COLOR = re.compile(r"#(?:[0-9a-fA-F]{3}|[0-9a-fA-F]{6})|\d+(\.\d*)?K")
+_FRAMES = re.compile(r"\d+(-\d+(x\d+)?)?")
+_COUNTED = re.compile(r"(\d+) (whole )?numbers")
+
+
+def refuse(expected: str) -> KeyRefused:
+    return KeyRefused(f"expected {expected}")
+
+
+def is_number(value: Any) -> bool:
+    return isinstance(value, (int, float)) and not isinstance(value, bool) and math.isfinite(value)
+
+
+def is_expression(value: Any) -> bool:
+    return isinstance(value, str) and value.startswith("=")
+
+
+def plain(value: Any) -> Any:
+    """Arrays and numbers of numpy as lists and numbers of Python; all else as it is."""
+    return value.tolist() if hasattr(value, "tolist") else value
+
+
+def range_in_words(key: Key) -> str:
+    low = "" if key.low is None else f"{'above' if key.above else 'from'} {key.low:g}"
+    high = "" if key.high is None else f"{'below' if key.below else 'up to'} {key.high:g}"
+    return " ".join(part for part in (" a number", low, high) if part).strip()
+
+
+def number(key: Key, value: Any) -> Any:
+    if is_number(value):
+        low, high = key.low, key.high
+        too_low = low is not None and (value < low or (key.above and value == low))
+        too_high = high is not None and (value > high or (key.below and value == high))
+        if not too_low and not too_high:
+            return value
+    raise refuse(range_in_words(key))
+
+
+def whole(key: Key, value: Any) -> Any:
+    if isinstance(value, float) and value.is_integer():
+        value = int(value)
+    if not isinstance(value, int):
+        raise refuse("a whole number, " + range_in_words(key))
+    return number(key, value)
+
+
+def component(key: Key, value: Any) -> Any:
+    return value if is_expression(value) else number(key, value)
+
+
+def several(count: int) -> Callable[[Key, Any], Any]:
+    def check(key: Key, value: Any) -> Any:
+        if not isinstance(value, Sequence) or isinstance(value, str) or len(value) != count:
+            raise refuse(f"{count} numbers")
+        return [component(key, item) for item in value]
+
+    return check
+
+
+def animated(one: Callable[[Key, Any], Any]) -> Callable[[Key, Any], Any]:
+    def check(key: Key, value: Any) -> Any:
+        if not isinstance(value, Keys):
+            return one(key, value)
+        if not value.keys:
+            raise refuse("at least one key")
+        return Keys({f: one(key, plain(v)) for f, v in value.keys.items()}, value.ease, value.repeat)
+
+    return check
+
+
+def scale(key: Key, value: Any) -> Any:
+    if isinstance(value, (list, tuple)):
+        return several(2 if len(value) == 2 else 3)(key, value)
+    return component(key, value)
+
+
+def color(key: Key, value: Any) -> Any:
+    if isinstance(value, str) and _COLOR.fullmatch(value):
+        return value
+    if isinstance(value, (list, tuple)):
+        return several(3)(key, value)
+    return component(key, value)
+
+
+def described(*modules: str) -> Callable[[Key, Any], Any]:
+    """Something that a class of these modules describes, or the name of one."""
+
+    def check(key: Key, value: Any) -> Any:
+        if isinstance(value, str) and value:
+            return value
+        if type(value).__module__.rpartition(".")[2] in modules and hasattr(value, "said"):
+            return value
+        raise refuse(f"a name, or one of hyades.{modules[0]}")
+
+    return check
+
+
+def or_texture(plain_check: Callable[[Key, Any], Any]) -> Callable[[Key, Any], Any]:
+    def check(key: Key, value: Any) -> Any:
+        is_name = isinstance(value, str) and not value.startswith(("=", "#"))
+        if (is_name and not _COLOR.fullmatch(value)) or hasattr(value, "said"):
+            return described("textures")(key, value)
+        return plain_check(key, value)
+
+    return check
+
+
+def choice(key: Key, value: Any) -> Any:
+    if value in key.names and type(value) in {type(name) for name in key.names}:
+        return value
+    raise refuse("one of " + ", ".join(repr(name) for name in key.names))
+
+
+def one_or_two_choices(key: Key, value: Any) -> Any:
+    if isinstance(value, (list, tuple)) and len(value) == 2:
+        return [choice(key, item) for item in value]
+    return choice(key, value)
+
+
+def of_type(kind: type, words: str) -> Callable[[Key, Any], Any]:
+    def check(key: Key, value: Any) -> Any:
+        if isinstance(value, kind):
+            return value
+        raise refuse(words)
+
+    return check
+
+
+def map_of_keys(key: Key, value: Any) -> Any:
+    if hasattr(value, "said"):
+        return value
+    raise refuse("an object of the class that the key's hint names")
+
+
+def or_map(plain_check: Callable[[Key, Any], Any]) -> Callable[[Key, Any], Any]:
+    return lambda key, value: value if hasattr(value, "said") else plain_check(key, value)
+
+
+def list_of(kind: Callable[[Key, Any], Any]) -> Callable[[Key, Any], Any]:
+    def check(key: Key, value: Any) -> Any:
+        if isinstance(value, str) or not isinstance(value, Sequence):
+            raise refuse("a list")
+        return [kind(key, item) for item in value]
+
+    return check
+
+
+def entries(key: Key, value: Any) -> Any:
+    if isinstance(value, Mapping) and all(isinstance(name, str) for name in value):
+        return value
+    raise refuse("a dict of names")
+
+
+def stops(key: Key, value: Any) -> Any:
+    if not isinstance(value, Mapping) or len(value) < 2 or not all(map(is_number, value)):
+        raise refuse("two or more numbers with their colours, such as {0: 0.1, 1: '#fd8'}")
+    return {at: or_texture(color)(key, plain(v)) for at, v in value.items()}
+
+
+def frames(key: Key, value: Any) -> Any:
+    if isinstance(value, range) and value.start >= 0 and value.step > 0 and len(value) > 0:
+        step = f"x{value.step}" if value.step > 1 else ""
+        return f"{value[0]}-{value[-1]}{step}"
+    if _FRAMES.fullmatch(str(value)) and not isinstance(value, bool):
+        return str(value)
+    raise refuse("a frame or range such as 7, '1-120', '1-120x2' or range(1, 121)")
+
+
+def units(key: Key, value: Any) -> Any:
+    return value if value in key.names else number(key, value)
+
+
+def file(key: Key, value: Any) -> Any:
+    is_array = hasattr(value, "dtype") and hasattr(value, "ndim")
+    if isinstance(value, (str, os.PathLike)) or is_array or hasattr(value, "encode"):
+        return value
+    raise refuse("a path, an array of numpy, a MeshData, Places or Picture")
+
+
+def mesh_file(key: Key, value: Any) -> Any:
+    if isinstance(value, Mapping) and value and all(isinstance(frame, int) for frame in value):
+        return {frame: file(key, mesh) for frame, mesh in value.items()}
+    return file(key, value)
+
+
+def files(key: Key, value: Any) -> Any:
+    return list_of(file)(key, value) if isinstance(value, (list, tuple)) else file(key, value)
+
+
+text = of_type(str, "a text")
+
+_CHECKS: dict[str, Callable[[Key, Any], Any]] = {
+    "number": number,
+    "whole number": whole,
+    "switch": of_type(bool, "True or False"),
+    "text": text,
+    "texts": list_of(text),
+    "choice": choice,
+    "one or two choices": one_or_two_choices,
+    "number, animated": animated(component),
+    "pair, animated": animated(several(2)),
+    "vector, animated": animated(several(3)),
+    "quaternion": animated(several(4)),
+    "scale, animated": animated(scale),
+    "colour, animated": animated(color),
+    "colour or texture": or_texture(animated(color)),
+    "number or texture": or_texture(animated(component)),
+    "colour or map": or_map(animated(color)),
+    "type or map": or_map(choice),
+    "map": map_of_keys,
+    "texture": described("textures"),
+    "a material's name": described("materials"),
+    "a medium's name": described("media"),
+    "a group's name": described("objects"),
+    "an object's name": text,
+    "list of steps": list_of(map_of_keys),
+    "list": list_of(map_of_keys),
+    "entries": entries,
+    "overrides": entries,
+    "stops": stops,
+    "frames": frames,
+    "frames or map": or_map(frames),
+    "units": units,
+    "file": file,
+    "files": files,
+    "mesh file": mesh_file,
+}
+
+
+def focus(key: Key, value: Any) -> Any:
+    is_name = isinstance(value, str) and not is_expression(value)
+    return value if is_name else animated(component)(key, value)
+
+
+_CHECKS["number, animated, or an object's name"] = focus
+
+
+def checked(key: Key, value: Any) -> Any:
+    """`value` as it is kept, or KeyRefused with what was expected."""
+    is_file = key.takes in ("file", "mesh file", "files")
+    value = value if is_file else plain(value)
+    counted = _COUNTED.fullmatch(key.takes)
+    if counted is None:
+        return _CHECKS[key.takes](key, value)
+    numbers = several(int(counted[1]))(key, value)
+    return [whole(key, item) if counted[2] else number(key, item) for item in numbers]

@@ -1,0 +1,103 @@
+"""How the classes of a job hold their keys: what was said, and what holds where nothing was."""
+
+from __future__ import annotations
+
+import difflib
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from typing import Any, ClassVar
+
+from .checks import checked
+from .errors import KeyRefused
+
+_UNSET: Any = type("Unset", (), {"__repr__": lambda self: "(not said)"})()
+_COLLECTIONS = {"entries": dict, "list": list}
+
+
+@dataclass
+class Key:
+    """A key of a job as a class has it: a descriptor that checks what it is given.
+
+    Reading a key that was not said gives its default. Only what was said is written to the job, so
+    that a default which was said stands there too (`like` needs the difference).
+    """
+
+    takes: str
+    default: Any = None
+    low: float | None = None
+    high: float | None = None
+    above: bool = False  # low itself is refused
+    below: bool = False  # high itself is refused
+    names: tuple[Any, ...] = ()
+    required: bool = False
+    name: str = field(default="", init=False)
+    owner: str = field(default="", init=False)
+
+    def __set_name__(self, owner: type, name: str) -> None:
+        self.name, self.owner = name, owner.__name__
+
+    def __get__(self, instance: Any, owner: type | None = None) -> Any:
+        if instance is None:
+            return _UNSET
+        said = instance.__dict__
+        if self.name not in said and self.takes in _COLLECTIONS:
+            said[self.name] = _COLLECTIONS[self.takes]()
+        if self.name not in said and self.required:
+            raise AttributeError(f"{type(instance).__name__}.{self.name} has not been said")
+        return said.get(self.name, self.default)
+
+    def __set__(self, instance: Any, value: Any) -> None:
+        if value is _UNSET or value is None:
+            instance.__dict__.pop(self.name, None)
+            return
+        try:
+            instance.__dict__[self.name] = checked(self, value)
+        except KeyRefused as error:
+            raise KeyRefused(f"{type(instance).__name__}.{self.name} is {value!r}, {error}") from None
+
+
+def key(takes: str, default: Any = None, **facts: Any) -> Any:
+    """A key, for the body of a class: see Key."""
+    return Key(takes, default, **facts)
+
+
+class Described:
+    """What a job describes by keys. A key that is None, or was not said, is not written."""
+
+    TYPE: ClassVar[str] = ""
+    """What the job calls this kind; empty: its keys tell."""
+    SECTIONS: ClassVar[tuple[str, ...]] = ()
+    """Where docs/job.md describes its keys."""
+
+    @classmethod
+    def keys(cls) -> dict[str, Key]:
+        """All keys by name, those of base classes first."""
+        found: dict[str, Key] = {}
+        for base in reversed(cls.__mro__):
+            found.update((name, k) for name, k in vars(base).items() if isinstance(k, Key))
+        return found
+
+    def said(self) -> Iterator[tuple[Key, Any]]:
+        """The keys that were said, with their values."""
+        for name, described in self.keys().items():
+            value = self.__dict__.get(name)
+            if value is not None and not (described.takes in _COLLECTIONS and not value):
+                yield described, value
+
+    def missing(self) -> list[str]:
+        """Keys that must be there, and are not; none where `like` brings others' keys."""
+        if self.__dict__.get("like"):
+            return []
+        return [n for n, k in self.keys().items() if k.required and n not in self.__dict__]
+
+    def __setattr__(self, name: str, value: Any) -> None:
+        known = self.keys()
+        if name not in known:
+            close = difflib.get_close_matches(name, known, 1)
+            hint = f"; did you mean '{close[0]}'?" if close else f"; it has {', '.join(known)}"
+            raise AttributeError(f"{type(self).__name__} has no key '{name}'{hint}")
+        super().__setattr__(name, value)
+
+    def __repr__(self) -> str:
+        said = ", ".join(f"{k.name}={value!r}" for k, value in self.said())
+        return f"{type(self).__name__}({said})"

@@ -1,0 +1,38 @@
+"""Which names of files a coordinator may give: it chooses them, and is not to be trusted with a disk.
+
+The same rules as of `hyades fetch`: core/job/output_path.h, core/base/printable.h.
+"""
+
+from __future__ import annotations
+
+import os
+import posixpath
+
+from ..errors import FileRefused
+
+# Characters that are not seen, steer terminals, or turn the direction of text.
+_DECEIVING = [
+    (0x0000, 0x001F), (0x007F, 0x009F), (0x00AD, 0x00AD), (0x061C, 0x061C), (0x180E, 0x180E),
+    (0x200B, 0x200B), (0x200E, 0x200F), (0x2028, 0x202E), (0x2060, 0x2064), (0x2066, 0x2069),
+    (0xFEFF, 0xFEFF), (0xFFF9, 0xFFFB), (0xE0000, 0xE007F), (0xD800, 0xDFFF),
+]  # fmt: skip
+
+
+def is_printable(text: str) -> bool:
+    return not any(first <= ord(c) <= last for c in text for first, last in _DECEIVING)
+
+
+def check_name(path: str, hidden: bool = False) -> None:
+    """FileRefused where `path`, as a coordinator names it, must not be written below a folder."""
+    parts = path.split("/")
+    stays = path and not path.startswith("/") and ".." not in parts and posixpath.normpath(path) == path
+    # Other systems have other ways to say "elsewhere": drives, backslashes.
+    foreign = os.name == "nt" and any(c in path for c in '\\:*?"<>|')
+    if not stays or path == "." or foreign or not is_printable(path):
+        raise FileRefused(f"the coordinator names an output that is no file of a job: {path[:200]!r}")
+    if ".hyades" in parts:
+        raise FileRefused(f"{path}: what hyades keeps for itself no job writes")
+    if not hidden and any(part.startswith((".", "-")) for part in parts):
+        raise FileRefused(
+            f"{path}: hidden files, and names that begin with '-', are not written (hidden=True writes them)"
+        )

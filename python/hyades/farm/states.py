@@ -1,0 +1,137 @@
+"""What a coordinator tells: as coordinator/web/api/openapi.yaml describes it, whose names these are.
+
+Times are milliseconds since 1970 (UTC). Fields that a later coordinator adds are left out.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, fields
+from typing import Any, TypeVar
+
+_State = TypeVar("_State")
+
+ENDED = ("done", "failed", "cancelled")
+
+
+def read_state(kind: type[_State], row: Mapping[str, Any]) -> _State:
+    """A row of an answer as one of the classes below."""
+    known = {field.name for field in fields(kind)}
+    values = {name: tuple(v) if isinstance(v, list) else v for name, v in row.items() if name in known}
+    return kind(**values)
+
+
+@dataclass(frozen=True, kw_only=True)
+class JobState:
+    """A job on the farm."""
+
+    id: int
+    name: str
+    state: str
+    """running, paused, done, failed or cancelled."""
+    owner: str = ""
+    priority: int = 0
+    frames: int = 0
+    frames_done: int = 0
+    frames_failed: int = 0
+    samples: int = 0
+    samples_done: int = 0
+    leased: int = 0
+    """Units that are out with workers."""
+    samples_per_second: float = 0.0
+    seconds_left: float = -1.0
+    """-1: unknown."""
+    submitted_ms: int = 0
+    ended_ms: int = 0
+    """0: not yet."""
+    reason: str = ""
+    max_workers: int = 0
+    tags: tuple[str, ...] = ()
+    memory_bytes: int = 0
+    max_attempts: int = 0
+    redundancy: int = 0
+    frame_order: str = ""
+    core_seconds: float = 0.0
+    cost: float = 0.0
+    noise_aim: float = 0.0
+    noise: float | None = None
+
+    @property
+    def ended(self) -> bool:
+        return self.state in ENDED
+
+    @property
+    def share(self) -> float:
+        """0 to 1 of all samples."""
+        return self.samples_done / self.samples if self.samples else 0.0
+
+
+@dataclass(frozen=True, kw_only=True)
+class FrameState:
+    """A frame of a job; `id` is its number."""
+
+    id: int
+    state: str
+    """waiting, rendering, finishing, done or failed."""
+    samples: int = 0
+    samples_done: int = 0
+    reason: str = ""
+    worker_class: str = ""
+    restarts: int = 0
+    doubtful: bool = False
+    noise: float | None = None
+
+
+@dataclass(frozen=True, kw_only=True)
+class WorkerState:
+    """Who renders."""
+
+    id: int
+    name: str
+    state: str
+    """active, draining, quarantined or gone."""
+    host: str = ""
+    worker_class: str = ""
+    build: str = ""
+    threads: int = 0
+    reason: str = ""
+    leased: int = 0
+    units_done: int = 0
+    units_failed: int = 0
+    samples_done: int = 0
+    joined_ms: int = 0
+    heard_ms: int = 0
+    memory_bytes: int = 0
+    memory_limit_bytes: int = 0
+    tags: tuple[str, ...] = ()
+    samples_per_second: float = 0.0
+
+
+@dataclass(frozen=True, kw_only=True)
+class OutputFile:
+    """A finished file; `id` is its path below the job's outputs."""
+
+    id: str
+    frame: int
+    size: int
+    sha256: str
+
+
+@dataclass(frozen=True, kw_only=True)
+class LogLine:
+    """What has happened to a job."""
+
+    id: int
+    time_ms: int
+    level: str
+    text: str
+    worker: str = ""
+    frame: int | None = None
+
+
+@dataclass(frozen=True)
+class Change:
+    """A job as it is now, and those of its frames that have changed."""
+
+    job: JobState
+    frames: tuple[FrameState, ...]

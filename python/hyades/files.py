@@ -1,0 +1,75 @@
+"""The files that a job brings along: what arrays become, and where others lie."""
+
+from __future__ import annotations
+
+import hashlib
+import os
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from .picture import encode_array
+
+_FOLDER = "assets"
+
+
+class JobFiles:
+    """Files beside a job in `folder`. Those made of arrays are called by their content, so that
+    equal ones are there once."""
+
+    def __init__(self, folder: Path) -> None:
+        self.folder = folder
+        self.made: dict[str, bytes] = {}
+        self.named: list[str] = []  # paths as the job has them
+
+    def reference(self, value: Any) -> str:
+        """What the job calls a file: a path, something with encode(), an array, or those by frame."""
+        if isinstance(value, (str, os.PathLike)):
+            path = os.path.relpath(os.path.abspath(value), os.path.abspath(self.folder))
+            self.named.append(Path(path).as_posix())
+            return self.named[-1]
+        if isinstance(value, Mapping):
+            return self._sequence(value)
+        data, end = _encoded(value)
+        name = f"{_FOLDER}/{_digest(data)}{end}"
+        self.made[name] = data
+        return name
+
+    def _sequence(self, meshes: Mapping[int, Any]) -> str:
+        """A file for each frame; the name is that of all their contents."""
+        encoded = {frame: _encoded(mesh) for frame, mesh in meshes.items()}
+        ends = {end for _, end in encoded.values()}
+        if len(ends) != 1:
+            raise ValueError(f"a file for each frame has to be of one kind, not {sorted(ends)}")
+        all_digest = _digest(b"".join(hashlib.sha256(data).digest() for data, _ in encoded.values()))
+        end = ends.pop()
+        for frame, (data, _) in encoded.items():
+            self.made[f"{_FOLDER}/{all_digest}.{frame:04d}{end}"] = data
+        return f"{_FOLDER}/{all_digest}.####{end}"
+
+    def write(self) -> None:
+        """Brings what arrays have become to the disk; what is there has that content already."""
+        for name, data in self.made.items():
+            path = self.folder / name
+            if path.exists() and path.stat().st_size == len(data):
+                continue
+            path.parent.mkdir(parents=True, exist_ok=True)
+            write_whole(path, data)
+
+
+def write_whole(path: Path, data: bytes) -> None:
+    """Nobody sees a part of the file."""
+    temporary = path.with_name(f".{path.name}.{os.getpid()}.part")
+    temporary.write_bytes(data)
+    os.replace(temporary, path)
+
+
+def _encoded(value: Any) -> tuple[bytes, str]:
+    if hasattr(value, "encode"):
+        data, end = value.encode()
+        return bytes(data), str(end)
+    return encode_array(value)
+
+
+def _digest(data: bytes) -> str:
+    return hashlib.sha256(data).hexdigest()[:16]

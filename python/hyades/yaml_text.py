@@ -1,0 +1,88 @@
+"""Plain data as YAML that people can read: blocks, with short lists and maps on one line."""
+
+from __future__ import annotations
+
+import json
+import re
+from typing import Any
+
+_WIDTH = 100
+_PLAIN = re.compile(r"[A-Za-z_][A-Za-z0-9_./-]*")
+_OTHER_THAN_TEXT = {"null", "true", "false", "yes", "no", "on", "off", "y", "n"}
+
+
+class Node(dict[Any, Any]):
+    """A map, and what it was made of."""
+
+    source: Any = None
+
+
+def scalar(value: Any) -> str:
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    if isinstance(value, (int, float)):
+        return repr(value)
+    if _PLAIN.fullmatch(value) and value.lower() not in _OTHER_THAN_TEXT:
+        return str(value)
+    return json.dumps(value, ensure_ascii=False)
+
+
+def flow(value: Any) -> str:
+    """On one line."""
+    if isinstance(value, dict):
+        return "{" + ", ".join(f"{scalar(k)}: {flow(v)}" for k, v in value.items()) + "}"
+    if isinstance(value, (list, tuple)):
+        return "[" + ", ".join(flow(v) for v in value) + "]"
+    return scalar(value)
+
+
+class YamlText:
+    """A document that is written line by line; `sources` are what its lines were made of."""
+
+    def __init__(self, document: Node) -> None:
+        self.lines: list[str] = []
+        self.sources: dict[int, Any] = {}
+        for name, value in document.items():
+            self._add(f"{scalar(name)}:", value, 0, top=True)
+
+    def __str__(self) -> str:
+        return "\n".join(self.lines) + "\n"
+
+    def source_of(self, line: int) -> Any:
+        """What wrote a line, or the nearest line before that something wrote; None where nothing did."""
+        before = [number for number in self.sources if number <= line]
+        return self.sources[max(before)] if before else None
+
+    def _line(self, text: str, value: Any) -> None:
+        self.lines.append(text)
+        source = getattr(value, "source", None)
+        if source is not None:
+            self.sources[len(self.lines)] = source
+
+    def _add(self, start: str, value: Any, depth: int, top: bool = False) -> None:
+        """`value` behind `start`, which stands `depth` steps from the margin."""
+        line = "  " * depth + start + " " + flow(value)
+        is_section = top and isinstance(value, dict) and any(isinstance(v, dict) for v in value.values())
+        if not isinstance(value, (dict, list)) or not value or (len(line) <= _WIDTH and not is_section):
+            self._line(line, value)
+            return
+        self._line("  " * depth + start, value)
+        if isinstance(value, dict):
+            for name, item in value.items():
+                self._add(f"{scalar(name)}:", item, depth + 1)
+        else:
+            for item in value:
+                self._add_item(item, depth + 1)
+
+    def _add_item(self, item: Any, depth: int) -> None:
+        line = "  " * depth + "- " + flow(item)
+        if not isinstance(item, dict) or len(line) <= _WIDTH:
+            self._line(line, item)
+            return
+        for place, (name, value) in enumerate(item.items()):
+            begin = len(self.lines)
+            self._add(f"{scalar(name)}:", value, depth + 1)
+            if place == 0:
+                first = self.lines[begin]
+                self.lines[begin] = "  " * depth + "- " + first.lstrip()
+                self.sources.setdefault(begin + 1, getattr(item, "source", None))
