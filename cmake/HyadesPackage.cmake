@@ -35,6 +35,9 @@ if(HYADES_FARM)
            FILES_MATCHING PATTERN \"*.yaml\")
     endif()")
 endif()
+# The package for Python, where Debian's looks for it.
+install(DIRECTORY python/hyades DESTINATION lib/python3/dist-packages FILES_MATCHING PATTERN "*.py" PATTERN py.typed
+        PATTERN __pycache__ EXCLUDE PATTERN .mypy_cache EXCLUDE)
 install(FILES README.md DESTINATION ${CMAKE_INSTALL_DOCDIR})
 install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} RENAME copyright)
 install(DIRECTORY docs DESTINATION ${CMAKE_INSTALL_DOCDIR})
@@ -51,6 +54,7 @@ set(CPACK_DEBIAN_PACKAGE_SECTION graphics)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)  # exact dependencies, read off the programs
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_RECOMMENDS ffmpeg)  # for videos
+set(CPACK_DEBIAN_PACKAGE_SUGGESTS "python3 (>= 3.11), python3-numpy")  # for the package hyades
 set(CPACK_STRIP_FILES ON)
 if(HYADES_FARM)
   # preinst knows which stores these programs can read: one version for each step of the schema.

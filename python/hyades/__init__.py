@@ -10,6 +10,11 @@
 docs/python.md tells the rest; `python3 -m hyades` shows whether the program is found.
 """
 
+try:
+    import numpy  # noqa: F401
+except ImportError as error:
+    raise ImportError("the package hyades needs numpy (Debian: apt install python3-numpy)") from error
+
 from .errors import Complaint, FarmError, FileRefused, HyadesError, JobError, KeyRefused, ProgramError
 from .exr import Layers, read_exr, write_exr
 from .farm import Farm

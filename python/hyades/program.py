@@ -13,8 +13,9 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any, TypeAlias
 
-from .errors import JobError, ProgramError, complaints_in
-from .job import Document, Job
+from .errors import HyadesError, JobError, ProgramError, complaints_in
+from .job import Job
+from .yaml_text import MADE_HERE
 
 PathLike: TypeAlias = "str | os.PathLike[str]"
 
@@ -26,7 +27,7 @@ def find_program(program: PathLike | None = None) -> str:
     """The program: `program`, what the environment variable HYADES names, one on PATH, or the one
     that was built or installed beside this package. ProgramError where there is none."""
     package = Path(__file__).resolve().parent
-    beside = [package.parent / "hyades", *(up / "build/bin/hyades" for up in package.parents)]
+    beside = [up / folder / "hyades" for up in package.parents for folder in ("bin", "build/bin")]
     named = program or os.environ.get("HYADES")
     if named:
         found = shutil.which(os.fspath(named))
@@ -96,15 +97,14 @@ def written(job: Job | PathLike, folder: Path) -> Iterator[Path]:
         yield Path(job)
         return
     document = job.document(folder)
+    path = folder / f"{job.name or 'job'}.yaml"
+    if path.exists() and not path.read_bytes().startswith(MADE_HERE.encode()):
+        raise HyadesError(f"{path} is there and was not made by this package: expected another output or name")
     try:
-        yield document.write(folder / f"{job.name or 'job'}.yaml")
+        yield document.write(path)
     except JobError as error:
-        raise _with_source(document, error) from None
-
-
-def _with_source(document: Document, error: JobError) -> JobError:
-    error.source = document.text.source_of(error.line)
-    return error
+        error.source = document.text.source_of(error.line)
+        raise
 
 
 def check(job: Job | PathLike, *, program: PathLike | None = None) -> str:

@@ -7,6 +7,7 @@ import re
 from typing import Any
 
 _WIDTH = 100
+MADE_HERE = "# Made by hyades for Python."
 _PLAIN = re.compile(r"[A-Za-z_][A-Za-z0-9_./-]*")
 _OTHER_THAN_TEXT = {"null", "true", "false", "yes", "no", "on", "off", "y", "n"}
 
@@ -40,7 +41,7 @@ class YamlText:
     """A document that is written line by line; `sources` are what its lines were made of."""
 
     def __init__(self, document: Node) -> None:
-        self.lines: list[str] = []
+        self.lines = [MADE_HERE]
         self.sources: dict[int, Any] = {}
         for name, value in document.items():
             self._add(f"{scalar(name)}:", value, 0, top=True)

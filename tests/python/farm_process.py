@@ -50,7 +50,9 @@ class FarmProcess:
 
     def _run(self, command: list[str], log: pathlib.Path) -> subprocess.Popen:
         with open(log, "ab") as out:
-            process = subprocess.Popen([HYADES, *command], stdout=out, stderr=out, start_new_session=True)
+            # Not even a test that is killed leaves them behind.
+            alone = ["setpriv", "--pdeathsig", "KILL", str(HYADES)]
+            process = subprocess.Popen([*alone, *command], stdout=out, stderr=out, start_new_session=True)
         self._processes.append(process)
         return process
 

@@ -125,8 +125,9 @@ class WholeFarm(unittest.TestCase):
 
     def test_fetch_follows(self) -> None:
         job = scene()
-        submitted = self.farm.submit(job)
-        threading.Timer(0.5, self.process.worker).start()
+        submitted = self.farm.pause(self.farm.submit(job))
+        self.process.worker()
+        threading.Timer(0.5, self.farm.resume, (submitted,)).start()
         self.assert_same_as_here(job, self.farm.fetch(submitted, self.folder / "there", follow=True))
 
     def test_a_mistake_in_the_job_comes_back_with_its_place(self) -> None:

@@ -92,6 +92,13 @@ class Render(unittest.TestCase):
         ball.material = None
         self.assertIn("good", hyades.check(job))
 
+    def test_a_file_of_somebody_else_is_not_replaced(self) -> None:
+        mine = self.folder / "shot.yaml"
+        mine.write_text("hyades: 1\n")
+        with self.assertRaisesRegex(hyades.HyadesError, "shot.yaml is there"):
+            hyades.render(small(name="shot"), self.folder)
+        self.assertEqual(mine.read_text(), "hyades: 1\n")
+
     def test_other_failures_say_what_is_wrong(self) -> None:
         with self.assertRaisesRegex(hyades.ProgramError, "nowhere.yaml"):
             hyades.render(self.folder / "nowhere.yaml", self.folder)

@@ -72,6 +72,7 @@ class Text(unittest.TestCase):
         self.assertEqual(
             job.yaml(),
             """\
+# Made by hyades for Python.
 hyades: 1
 name: ball
 film: {size: [64, 36]}

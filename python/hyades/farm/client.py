@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import getpass
-import os
+import itertools
 import secrets
 from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
@@ -82,7 +82,7 @@ class Farm:
             "name": name,
             "samples": samples,
             "priority": priority,
-            "owner": _user() if owner is None else owner,
+            "owner": self._owner() if owner is None else owner,
             "max_workers": max_workers,
             "tags": list(tags),
             "memory_bytes": memory_bytes,
@@ -171,14 +171,7 @@ class Farm:
 
     def outputs(self, job: JobId, frame: int | None = None) -> Iterator[OutputFile]:
         """The finished files, in the order in which they were finished."""
-        after: int | None = None
-        while True:
-            query = {"after": after, "frame": frame}
-            answer = self._http.call("GET", _path(job, "outputs"), query=query)
-            yield from (read_state(OutputFile, row) for row in answer["outputs"])
-            after = answer["after"]
-            if not answer["more"]:
-                return
+        return (file for _, file in self._outputs_after(job, 0, frame))
 
     def fetch(
         self,
@@ -198,18 +191,16 @@ class Farm:
         that no fetch has written (`overwrite` replaces it), or the bytes are not those promised.
         """
         fetcher = Fetcher(self._http, _id(job), Path(folder), hidden, overwrite, on_bytes)
-        here: dict[OutputFile, Path] = {}
-
-        def bring() -> None:
-            for file in self.outputs(job):
-                if file not in here and (frames is None or file.frame in frames):
-                    here[file] = fetcher.fetch(file)
-
-        if follow:
-            for change in self.watch(job):
-                if any(frame.state == "done" for frame in change.frames):
-                    bring()
-        bring()
+        here: dict[str, Path] = {}
+        told = 0
+        # Of a job that is not followed this is one round; of one that is, the last comes after its end.
+        for change in itertools.chain(self.watch(job) if follow else (), (None,)):
+            if change is not None and not any(frame.state == "done" for frame in change.frames):
+                continue
+            for after, file in self._outputs_after(job, told):
+                if frames is None or file.frame in frames:
+                    here[file.id] = fetcher.fetch(file)
+                told = after
         return list(here.values())
 
     def film(self, job: JobId, frame: int, layer: str = "beauty", *, width: int | None = None) -> FilmLayer:
@@ -253,6 +244,25 @@ class Farm:
         answer: dict[str, Any] = self._http.call("GET", "/api/v1/info")
         return answer
 
+    def _owner(self) -> str:
+        """Nobody in particular where a token tells it; else who runs this."""
+        if self._http.has_token:
+            return ""
+        try:
+            return getpass.getuser()
+        except (OSError, KeyError, ImportError):
+            return ""
+
+    def _outputs_after(self, job: JobId, after: int, frame: int | None = None) -> Iterator[tuple[int, OutputFile]]:
+        """Files that were finished later than what `after` stands for, and what stands for each."""
+        more = True
+        while more:
+            query = {"after": after, "frame": frame}
+            answer = self._http.call("GET", _path(job, "outputs"), query=query)
+            after, more = answer["after"], answer["more"]
+            for row in answer["outputs"]:
+                yield after, read_state(OutputFile, row)
+
     def _steer(self, job: JobId, action: str) -> JobState:
         return read_state(JobState, self._http.call("POST", _path(job, action)))
 
@@ -277,13 +287,6 @@ def _id(thing: Any) -> int:
 
 def _path(job: JobId, below: str = "") -> str:
     return f"/api/v1/jobs/{_id(job)}" + (f"/{below}" if below else "")
-
-
-def _user() -> str:
-    try:
-        return getpass.getuser()
-    except (OSError, KeyError, ImportError):
-        return f"user-{os.getpid()}"
 
 
 def _frame_range(frames: str | int | range) -> dict[str, int]:

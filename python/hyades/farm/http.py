@@ -46,6 +46,7 @@ class Http:
             )
         self._tls = _tls_context(ca, certificate) if self.secure else None
         self._token = token if token is not None else _token_of_file(environment.get("HYADES_TOKEN_FILE"))
+        self.has_token = bool(self._token)
         self._patience = patience
         self._reached = False
 

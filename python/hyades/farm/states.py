@@ -30,6 +30,8 @@ class JobState:
     state: str
     """running, paused, done, failed or cancelled."""
     owner: str = ""
+    owner_proven: bool = False
+    """Whether a token has shown who the owner is."""
     priority: int = 0
     frames: int = 0
     frames_done: int = 0
@@ -53,6 +55,8 @@ class JobState:
     frame_order: str = ""
     core_seconds: float = 0.0
     cost: float = 0.0
+    preview_frame: int | None = None
+    """That best stands for the job; None: nothing is to be seen yet."""
     noise_aim: float = 0.0
     noise: float | None = None
 
@@ -104,6 +108,12 @@ class WorkerState:
     memory_bytes: int = 0
     memory_limit_bytes: int = 0
     tags: tuple[str, ...] = ()
+    work: tuple[Mapping[str, int], ...] = ()
+    """Jobs, frames and how many units of them are out with it."""
+    cache_bytes: int = 0
+    cache_limit_bytes: int = 0
+    cache_hits: int = 0
+    cache_misses: int = 0
     samples_per_second: float = 0.0
 
 

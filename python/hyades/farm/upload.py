@@ -5,7 +5,7 @@ from __future__ import annotations
 import hashlib
 import io
 import tempfile
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
@@ -13,7 +13,7 @@ from typing import Any, BinaryIO
 
 from ..errors import FarmError, HyadesError, JobError
 from ..job import Document, Job
-from ..job_types.objects import GltfScene, ObjScene, PbrtScene
+from ..job_types.objects import GltfScene, Group, ObjScene, Object, PbrtScene
 from ..program import PathLike, files_of
 from .http import Http
 
@@ -161,10 +161,19 @@ def _of_job(error: FarmError, package: Package) -> HyadesError:
 
 def _names_all_files(job: Job, document: Document) -> bool:
     """Whether the files that the job names are all that it needs."""
-    things = [*job.objects.values(), *(o for group in job.groups.values() for o in group.objects.values())]
-    scenes = any(isinstance(thing, (GltfScene, ObjScene, PbrtScene)) or hasattr(thing, "group") for thing in things)
+    everything = [*all_objects(job.objects), *(o for g in job.groups.values() for o in all_objects(g.objects))]
+    scenes = any(isinstance(thing, (GltfScene, ObjScene, PbrtScene)) for thing in everything)
     plain = all((document.files.folder / name).is_file() for name in document.files.named)
     return plain and not scenes and not job.include and job.color is None
+
+
+def all_objects(objects: Mapping[str, Object], within: tuple[Group, ...] = ()) -> Iterator[Object]:
+    """These, and those in groups among them, wherever those are described."""
+    for thing in objects.values():
+        yield thing
+        group = thing.__dict__.get("group") or thing.__dict__.get("instance")
+        if isinstance(group, Group) and group not in within:
+            yield from all_objects(group.objects, (*within, group))
 
 
 def _own_files(name: str, document: Document) -> Iterator[JobFile]:
