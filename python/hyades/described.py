@@ -69,13 +69,17 @@ class Described:
     SECTIONS: ClassVar[tuple[str, ...]] = ()
     """Where docs/job.md describes its keys."""
 
+    _KEYS: ClassVar[dict[str, Key]] = {}
+
+    def __init_subclass__(cls) -> None:
+        super().__init_subclass__()
+        own = {name: k for name, k in vars(cls).items() if isinstance(k, Key)}
+        cls._KEYS = {**cls._KEYS, **own}
+
     @classmethod
     def keys(cls) -> dict[str, Key]:
         """All keys by name, those of base classes first."""
-        found: dict[str, Key] = {}
-        for base in reversed(cls.__mro__):
-            found.update((name, k) for name, k in vars(base).items() if isinstance(k, Key))
-        return found
+        return cls._KEYS
 
     def said(self) -> Iterator[tuple[Key, Any]]:
         """The keys that were said, with their values."""
