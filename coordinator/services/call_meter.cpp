@@ -5,7 +5,6 @@
 #include <chrono>
 #include <cstddef>
 #include <string>
-#include <utility>
 
 #include <grpcpp/support/byte_buffer.h>
 
@@ -13,6 +12,7 @@
 #include "coordinator/access/audit_log.h"
 #include "coordinator/meters/meters.h"
 #include "coordinator/operations/operation.h"
+#include "coordinator/services/connection_gate.h"
 
 namespace hyades::coordinator {
 namespace {
@@ -21,7 +21,6 @@ using grpc::experimental::InterceptionHookPoints;
 using grpc::experimental::Interceptor;
 using grpc::experimental::InterceptorBatchMethods;
 using grpc::experimental::ServerRpcInfo;
-using Broken = std::function<void(const std::string& address)>;
 
 /// As gRPC writes it: "NOT_FOUND".
 std::string name_of(grpc::StatusCode code) {
@@ -44,17 +43,19 @@ bool is_unary(const std::string& method) {
 
 class CallMeter final : public Interceptor {
  public:
-  CallMeter(Meters& meters, const Broken& broken, ServerRpcInfo& info)
+  CallMeter(Meters& meters, ConnectionGate& gate, ServerRpcInfo& info)
       : meters_(meters),
-        broken_(broken),
+        gate_(gate),
         address_(address_of_peer(info.server_context()->peer())),
         method_(short_name(info.method())),
         unary_(is_unary(method_)),
-        begun_(std::chrono::steady_clock::now()) {}
+        begun_(std::chrono::steady_clock::now()) {
+    gate_.note_begun(address_);
+  }
 
   /// A call that was broken off has no status.
   ~CallMeter() override {
-    if (code_ == grpc::StatusCode::CANCELLED) broken_(address_);
+    gate_.note_over(address_, code_ == grpc::StatusCode::CANCELLED);
     meters_.called(method_, name_of(code_).c_str(), unary_,
                    std::chrono::steady_clock::now() - begun_);
   }
@@ -81,7 +82,7 @@ class CallMeter final : public Interceptor {
 
  private:
   Meters& meters_;
-  const Broken& broken_;
+  ConnectionGate& gate_;
   const std::string address_;
   const std::string method_;
   const bool unary_;
@@ -91,22 +92,22 @@ class CallMeter final : public Interceptor {
 
 class Factory final : public grpc::experimental::ServerInterceptorFactoryInterface {
  public:
-  Factory(Meters& meters, Broken broken) : meters_(meters), broken_(std::move(broken)) {}
+  Factory(Meters& meters, ConnectionGate& gate) : meters_(meters), gate_(gate) {}
   Interceptor* CreateServerInterceptor(ServerRpcInfo* info) override {
-    return new CallMeter(meters_, broken_, *info);  // gRPC deletes it
+    return new CallMeter(meters_, gate_, *info);  // gRPC deletes it
   }
 
  private:
   Meters& meters_;
-  const Broken broken_;
+  ConnectionGate& gate_;
 };
 
 }  // namespace
 
 std::vector<std::unique_ptr<grpc::experimental::ServerInterceptorFactoryInterface>> count_calls(
-    Meters& meters, Broken broken) {
+    Meters& meters, ConnectionGate& gate) {
   std::vector<std::unique_ptr<grpc::experimental::ServerInterceptorFactoryInterface>> all;
-  all.push_back(std::make_unique<Factory>(meters, std::move(broken)));
+  all.push_back(std::make_unique<Factory>(meters, gate));
   return all;
 }
 

@@ -1,20 +1,19 @@
 #pragma once
 
-#include <functional>
 #include <memory>
-#include <string>
 #include <vector>
 
 #include <grpcpp/support/server_interceptor.h>
 
 namespace hyades::coordinator {
 
+class ConnectionGate;
 class Meters;
 
 /// Counts every call of our services by method and code, with its time and the bytes of its
-/// messages, and tells `broken` the address (address_text()) of each that was broken off. `meters`
-/// outlives the server.
+/// messages. `meters` and `gate`, which hears of each call that begins and ends, outlive the
+/// server.
 std::vector<std::unique_ptr<grpc::experimental::ServerInterceptorFactoryInterface>> count_calls(
-    Meters& meters, std::function<void(const std::string& address)> broken);
+    Meters& meters, ConnectionGate& gate);
 
 }  // namespace hyades::coordinator

@@ -142,20 +142,36 @@ void ConnectionGate::mark_unknown(const std::string& address) {
   wake();
 }
 
-void ConnectionGate::note_broken(const std::string& address) {
+void ConnectionGate::note_begun(const std::string& address) {
   const core::MutexLock lock(mutex_);
   const auto found = by_address_.find(address);
   if (found == by_address_.end()) return;
-  Connection& connection = connections_.at(found->second);
-  if (!connection.known) return;  // of a stranger bytes are bounded
+  const Id id = found->second;
+  if (++connections_.at(id).open_calls > limits_.open_calls) shut_out(id);
+}
+
+void ConnectionGate::note_over(const std::string& address, bool broken) {
+  const core::MutexLock lock(mutex_);
+  const auto found = by_address_.find(address);
+  if (found == by_address_.end()) return;
+  const Id id = found->second;
+  Connection& connection = connections_.at(id);
+  connection.open_calls = std::max(connection.open_calls - 1, 0);
+  if (!broken || !connection.known) return;  // of a stranger bytes are bounded
   const Time now = std::chrono::steady_clock::now();
   if (!connection.broken) {
     connection.broken.emplace(limits_.broken_calls, limits_.broken_calls_per_second, now);
   }
-  if (connection.broken->take(now)) return;
+  if (!connection.broken->take(now)) shut_out(id);
+}
+
+/// Ends the connection of one who costs too much, and lets his token rest.
+void ConnectionGate::shut_out(Id id) {
+  const Time now = std::chrono::steady_clock::now();
+  const std::string token_id = connections_.at(id).token_id;
   std::erase_if(resting_, [&](const auto& other) { return other.second <= now; });
-  if (!connection.token_id.empty()) resting_[connection.token_id] = now + limits_.broken_rest;
-  drop(found->second);
+  if (!token_id.empty()) resting_[token_id] = now + limits_.broken_rest;
+  drop(id);
   wake();
 }
 

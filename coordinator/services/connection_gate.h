@@ -37,11 +37,13 @@ class ConnectionGate {
     /// Calls in a row without a token that is one, after which somebody goes: a stranger, or who
     /// was known by a token that is revoked since.
     int stranger_calls = 8;
-    /// Calls that one who is known may break off at once, and how many more each second. gRPC keeps
-    /// twenty kilobytes of each until it comes to it. Who breaks off more goes, and nobody comes in
-    /// by the token for a while.
+    /// Calls that one who is known may break off at once, and how many more each second; and how
+    /// many of his may be in work. gRPC takes any number at once that are broken off, and keeps
+    /// twenty kilobytes of each until it comes to it. Who has more goes, and nobody comes in by the
+    /// token for a while.
     double broken_calls = 100;
     double broken_calls_per_second = 5;
+    int open_calls = 400;
     std::chrono::seconds broken_rest{10};
     /// Connections of those that are known; also bounded by the files that may be open. With one
     /// token as many as are free at most, so half of them, and then who has another comes in.
@@ -69,8 +71,10 @@ class ConnectionGate {
   /// Whoever called from there has shown no token that is one. Thread-safe.
   void mark_unknown(const std::string& address);
 
-  /// A call from there was broken off before it was answered. Thread-safe.
-  void note_broken(const std::string& address);
+  /// A call from there has begun. Thread-safe.
+  void note_begun(const std::string& address);
+  /// A call from there is over; `broken`: broken off before it was answered. Thread-safe.
+  void note_over(const std::string& address, bool broken);
 
   /// How many there are.
   struct Count {
@@ -92,6 +96,7 @@ class ConnectionGate {
     uint32_t bound = 0;                   ///< of what is let in of a stranger
     int calls = 0;                        ///< in a row without a token that is one
     std::optional<TokenBucket> broken{};  ///< calls that may be broken off
+    int open_calls = 0;
   };
 
   void run();
@@ -105,6 +110,7 @@ class ConnectionGate {
   void drop(Id id) HYADES_REQUIRES(mutex_);
   bool has_place_for(const std::string& token_id) const HYADES_REQUIRES(mutex_);
   bool rests(const std::string& token_id) const HYADES_REQUIRES(mutex_);
+  void shut_out(Id id) HYADES_REQUIRES(mutex_);
   void look_at_strangers(Time now) HYADES_REQUIRES(mutex_);
   void wake() const;
 

@@ -81,9 +81,7 @@ core::Result<std::unique_ptr<Server>> Server::start(const farm::Door& door, Cont
   parts->acceptor = builder.experimental().AddExternalConnectionAcceptor(
       Builder::ExternalConnectionType::FROM_FD, door.credentials);
   builder.RegisterService(&parts->service);
-  builder.experimental().SetInterceptorCreators(count_calls(
-      controller.meters(),
-      [&gate = parts->gate](const std::string& address) { gate.note_broken(address); }));
+  builder.experimental().SetInterceptorCreators(count_calls(controller.meters(), parts->gate));
   builder.SetMaxReceiveMessageSize(static_cast<int>(farm::kMaxResultBytes));
   builder.AddChannelArgument(GRPC_ARG_KEEPALIVE_TIME_MS, kKeepaliveMs);
   builder.AddChannelArgument(GRPC_ARG_KEEPALIVE_TIMEOUT_MS, kKeepaliveTimeoutMs);

@@ -346,6 +346,22 @@ TEST_F(ConnectionGateTest, WhoseTokenIsRevokedGoesAfterAFewCalls) {
   EXPECT_TRUE(holds(0, 0, 0));
 }
 
+TEST_F(ConnectionGateTest, WhoHasFarTooManyCallsInWorkGoes) {
+  limits.open_calls = 10;
+  open();
+  PlainCaller caller(port);
+  ASSERT_TRUE(holds(0, 1, 0));
+  gate->mark_known(caller.address(), "ada");
+  for (int i = 0; i < 100; ++i) {
+    gate->note_begun(caller.address());
+    gate->note_over(caller.address(), false);
+  }
+  for (int i = 0; i < 10; ++i) gate->note_begun(caller.address());
+  EXPECT_FALSE(caller.ended(100ms));
+  gate->note_begun(caller.address());
+  EXPECT_TRUE(caller.ended(20s));
+}
+
 TEST_F(ConnectionGateTest, WhoBreaksCallAfterCallOffGoesAndRests) {
   limits.broken_calls = 10;
   limits.broken_calls_per_second = 0;
@@ -353,12 +369,12 @@ TEST_F(ConnectionGateTest, WhoBreaksCallAfterCallOffGoesAndRests) {
   open();
   PlainCaller caller(port);
   ASSERT_TRUE(holds(0, 1, 0));
-  for (int i = 0; i < 20; ++i) gate->note_broken(caller.address());
+  for (int i = 0; i < 20; ++i) gate->note_over(caller.address(), true);
   EXPECT_FALSE(caller.ended(100ms)) << "a stranger's bytes are bounded instead";
   gate->mark_known(caller.address(), "ada");
-  for (int i = 0; i < 10; ++i) gate->note_broken(caller.address());
+  for (int i = 0; i < 10; ++i) gate->note_over(caller.address(), true);
   EXPECT_FALSE(caller.ended(100ms));
-  gate->note_broken(caller.address());
+  gate->note_over(caller.address(), true);
   EXPECT_TRUE(caller.ended(20s));
   PlainCaller again(port);
   ASSERT_TRUE(holds(0, 1, 0));
