@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <bit>
 #include <cassert>
-#include <cmath>
 #include <cstddef>
 #include <utility>
 
@@ -254,7 +253,9 @@ Status Film::check() const {
             fmt::format("channel {} has a value where no batch is held", layout_.channels[c].name)};
       }
       // Or honest films could not be added to it.
-      if (!minima && std::abs(planes_[c][i].high) > kMostOfBatch * int64_t{batches[i]}) {
+      const int64_t most = kMostOfBatch * int64_t{batches[i]};
+      const int64_t whole = planes_[c][i].high;
+      if (!minima && (whole > most || whole < -most)) {
         return Error{fmt::format("channel {} has a value beyond what {} batches add up to",
                                  layout_.channels[c].name, batches[i])};
       }

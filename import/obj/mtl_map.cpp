@@ -40,9 +40,9 @@ struct Neutral {
 /// Corrected colours, the kind of a reflection, the size to which a small picture is blown up.
 constexpr std::array<Neutral, 3> kNeutral = {{{"-cc", "off"}, {"-type", ""}, {"-texres", ""}}};
 
-class MapReader {
+class MapLine {
  public:
-  MapReader(MtlMap& map, std::vector<std::string>& left_out) : map_(map), left_out_(left_out) {}
+  MapLine(MtlMap& map, std::vector<std::string>& left_out) : map_(map), left_out_(left_out) {}
 
   const char* read(std::string_view rest) {
     map_ = {};
@@ -142,7 +142,7 @@ class MapReader {
 }  // namespace
 
 const char* read_mtl_map(std::string_view rest, MtlMap& map, std::vector<std::string>& left_out) {
-  return MapReader(map, left_out).read(rest);
+  return MapLine(map, left_out).read(rest);
 }
 
 }  // namespace hyades::core

@@ -115,10 +115,11 @@ TEST(FilmCodec, ASplatTakesAboutTwelveBytesAndItsPlace) {
 }
 
 TEST(FilmCodec, ExtremeSumsSurvive) {
+  constexpr int64_t kMost = 1'099'500'000'000;  // of one batch
   const FilmLayout layout = make_film_layout({});
   Film film = render(layout, {0, 0, 4, 1}, {0, 1});
-  film.mutable_plane(0)[0] = {0, INT64_MIN};
-  film.mutable_plane(0)[1] = {~uint64_t{0}, INT64_MAX};
+  film.mutable_plane(0)[0] = {0, -kMost};
+  film.mutable_plane(0)[1] = {~uint64_t{0}, kMost - 1};
   film.mutable_plane(1)[0] = {1, 0};
   film.mutable_plane(1)[1] = {0, -1};
   const Result<Film> back = decode_film(encode_film(film));

@@ -129,9 +129,10 @@ TEST_F(FilmExr, GivesBackTheSameBits) {
 }
 
 TEST_F(FilmExr, ExtremeSumsSurvive) {
+  constexpr int64_t kMost = 1'099'500'000'000;  // of one batch
   FilmFile file = patchwork_file({});
-  file.film.mutable_plane(0)[0] = {0, INT64_MIN};
-  file.film.mutable_plane(0)[1] = {~uint64_t{0}, INT64_MAX};
+  file.film.mutable_plane(0)[0] = {0, -kMost};
+  file.film.mutable_plane(0)[1] = {~uint64_t{0}, kMost - 1};
   file.film.mutable_plane(1)[2] = {1, 0};
   file.film.mutable_plane(2)[3] = {~uint64_t{0}, -1};
   ASSERT_TRUE(write_film_exr(path("a.exr"), file).ok());
