@@ -27,12 +27,12 @@ TEST(Complaints, TexturesWhereOnlyAColourIsAllowed) {
 TEST(Complaints, ColoursOfTexturesThatAreNoSharesOfLight) {
   EXPECT_EQ(complaints("textures: {wall: {type: checker, a: [200, 30, 0], b: [0.5, 1, 1]}}\n"
                        "materials: {m: {type: lambert, color: wall}}\n"),
-            "job.yaml:2:15: texture 'wall' has the colour [200, 30, 0] and is the color of "
+            "job.yaml:2:18: texture 'wall' has the colour [200, 30, 0] and is the color of "
             "material 'm', expected at most 1: if they go from 0 to 255, \"#c81e00\"\n");
   EXPECT_EQ(
       complaints("textures: {in: {type: constant, value: 1.5}, wall: {type: mix, a: 0, b: in}}\n"
                  "materials: {m: {type: principled, base_color: wall}}\n"),
-      "job.yaml:2:13: texture 'in' has the colour [1.5, 1.5, 1.5] and is the base_color of "
+      "job.yaml:2:16: texture 'in' has the colour [1.5, 1.5, 1.5] and is the base_color of "
       "material 'm', expected at most 1\n");
   // Light may be any; arithmetic makes shares of what is none; so do stops of the number before.
   EXPECT_EQ(complaints("textures: {t: {type: checker, a: 200}, half: {type: scale, input: t, "

@@ -91,8 +91,7 @@ TEST(Complaints, NumbersOutOfRange) {
             "job.yaml:2:30: crop is [2, 2, 11, 4], expected [x0, y0, x1, y1] with x0 < x1 and y0 "
             "< y1 inside the film of 10 x 10\n");
   EXPECT_EQ(complaints("frames: {range: 9-3}\n"),
-            "job.yaml:2:17: range is '9-3', expected a frame or range such as 7, 1-120 or "
-            "1-120x2, up to 9999999\n");
+            "job.yaml:2:17: range is '9-3', expected the first frame first: 3-9\n");
   // Above 0 as a double, but not as the float that it becomes.
   EXPECT_EQ(complaints("objects: {a: {shape: sphere, radius: 1e-60}}\n"),
             "job.yaml:2:38: radius is '1e-60', expected a number above 0\n");
@@ -121,7 +120,8 @@ TEST(Complaints, KeysThatAreNoTextHideNoOtherComplaint) {
       "job.yaml:2:14: size is '640', expected a list of 2 whole numbers\n"
       "job.yaml:4:3: an empty key; keys are plain text\n"
       "job.yaml:5:3: a list or map as a key; keys are plain text\n"
-      "job.yaml:6:20: shape is 'cube', expected sphere, rectangle, disk, box or cylinder\n"
+      "job.yaml:6:20: shape is 'cube', expected sphere, rectangle, disk, box or cylinder, did you "
+      "mean 'box'?\n"
       "job.yaml:7:3: an alias as a key; keys are plain text\n"
       "job.yaml:8:3: '<<' is not supported; use `like: name` to copy another entry's keys\n");
 }
@@ -164,8 +164,10 @@ TEST(Complaints, TypesAndChoicesListWhatThereIs) {
             "job.yaml:2:41: metal is 'sliver', expected aluminium, brass, chromium, cobalt, "
             "copper, gold, iron, nickel, palladium, platinum, silver, titanium or tungsten, did "
             "you mean 'silver'?\n");
-  EXPECT_EQ(complaints("objects: {a: {shape: cube}}\n"),
-            "job.yaml:2:22: shape is 'cube', expected sphere, rectangle, disk, box or cylinder\n");
+  EXPECT_EQ(
+      complaints("objects: {a: {shape: cube}}\n"),
+      "job.yaml:2:22: shape is 'cube', expected sphere, rectangle, disk, box or cylinder, did "
+      "you mean 'box'?\n");
 }
 
 TEST(Complaints, DuplicateKeys) {
