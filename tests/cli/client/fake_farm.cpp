@@ -64,13 +64,14 @@ struct FakeFarm::JobsService : v1::Jobs::Service {
       response->set_next_before(request->before() - 1);
       return Status::OK;
     }
-    constexpr int kPage = 2;  // small, so that paging is tried
+    const int page = request->limit() != 0 ? static_cast<int>(request->limit())
+                                           : 2;  // small, so that paging is tried
     for (auto job = farm.jobs.rbegin(); job != farm.jobs.rend(); ++job) {
       if (request->before() != 0 && job->id() >= request->before()) continue;
       if (!request->ended() && job->state() > v1::JOB_STATE_PAUSED) continue;
       if (!request->owner().empty() && job->owner() != request->owner()) continue;
-      if (response->jobs_size() == kPage) {
-        response->set_next_before(response->jobs(kPage - 1).id());
+      if (response->jobs_size() == page) {
+        response->set_next_before(response->jobs(page - 1).id());
         break;
       }
       *response->add_jobs() = *job;

@@ -368,6 +368,8 @@ TEST(JobStore, OwnersOfTheSixthSchemaAreProvenByTokensThatWereThereBefore) {
                          "ALTER TABLE jobs DROP COLUMN options; DROP TABLE secret; "
                          "ALTER TABLE tokens DROP COLUMN pool; "
                          "ALTER TABLE tokens DROP COLUMN machines; "
+                         "ALTER TABLE jobs DROP COLUMN samples_done; "
+                         "ALTER TABLE jobs DROP COLUMN begun_ms; "
                          "PRAGMA user_version=6",
                          nullptr, nullptr, nullptr),
             SQLITE_OK);

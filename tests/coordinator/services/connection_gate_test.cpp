@@ -216,8 +216,13 @@ TEST_F(ConnectionGateTest, WhoCallsAndCallsWithoutATokenIsCutOff) {
   EXPECT_FALSE(stranger.ended(100ms));
   gate->mark_unknown(stranger.address());
   EXPECT_TRUE(stranger.ended(20s));
-  for (int i = 0; i < 100; ++i) gate->mark_unknown(known.address());
-  EXPECT_FALSE(known.ended(100ms)) << "a mistake of one who is known";
+  for (int i = 0; i < 100; ++i) {
+    gate->mark_known(known.address());
+    gate->mark_unknown(known.address());
+  }
+  EXPECT_FALSE(known.ended(100ms)) << "mistakes of one who is known";
+  for (int i = 1; i < limits.stranger_calls; ++i) gate->mark_unknown(known.address());
+  EXPECT_TRUE(known.ended(20s)) << "whose token is good no more";
 }
 
 TEST_F(ConnectionGateTest, WhatWasHeldBackComesInWhenItsSenderIsKnown) {

@@ -324,7 +324,10 @@ TEST_F(Limits, AWorkerThatDoesNotReadIsCutOff) {
   hello.set_worker_class("class-a");
   hello.set_threads(1);
   ASSERT_TRUE(stream->Write(message));
-  message.mutable_result()->set_job(7);  // of no job: each is answered with words
+  v1::UnitResult& result = *message.mutable_result();
+  result.set_job(7);  // of no job: each is answered with words
+  *result.mutable_unit() = farm::to_wire(core::Unit{0, {0, 0, 8, 8}, {0, 1}});
+  result.set_digest(farm::to_wire(core::Sha256{}));
   int written = 0;
   while (written < 1'000'000 && stream->Write(message)) ++written;
   EXPECT_GT(written, 50'000) << "many answers may wait";

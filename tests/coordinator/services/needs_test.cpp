@@ -71,6 +71,8 @@ TEST(Needs, OfOlderJobStoresAreTakenOver) {
                          "ALTER TABLE tokens DROP COLUMN pool;"
                          "ALTER TABLE tokens DROP COLUMN machines;"
                          "DROP TRIGGER count_core_time; DROP TABLE core_time;"
+                         "ALTER TABLE jobs DROP COLUMN samples_done;"
+                         "ALTER TABLE jobs DROP COLUMN begun_ms;"
                          "PRAGMA user_version=7;"
                          "UPDATE jobs SET max_workers = 300, tags = 'gpu,quiet', max_attempts = 7,"
                          "memory = 1099511627776, frame_order = 2 WHERE id = 1",
