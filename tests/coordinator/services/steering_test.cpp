@@ -64,7 +64,8 @@ TEST(Steering, ACancelledJobCanBeTakenUpAgainAndDeleted) {
   const grpc::Status late = world.jobs->Pause(world.context().get(), about(job), &now);
   EXPECT_EQ(late.error_code(), grpc::StatusCode::FAILED_PRECONDITION);
   ASSERT_TRUE(world.jobs->Retry(world.context().get(), about(job), &now).ok());
-  EXPECT_EQ(now.job().samples_done(), over.samples_done()) << "its films are still there";
+  EXPECT_GE(now.job().samples_done(), over.samples_done())
+      << "its films are still there, and such as were on their way to the disk";
   const ScriptedWorker worker(world.address, world.script(2));
   ASSERT_TRUE(world.wait_for(job, v1::JOB_STATE_DONE));
   for (int frame = 1; frame <= 3; ++frame) world.expect_truth(job, frame);
