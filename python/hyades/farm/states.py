@@ -44,6 +44,8 @@ class JobState:
     seconds_left: float = -1.0
     """-1: unknown."""
     submitted_ms: int = 0
+    begun_ms: int = 0
+    """When its first unit was leased; 0: not yet, or not known."""
     ended_ms: int = 0
     """0: not yet."""
     reason: str = ""
