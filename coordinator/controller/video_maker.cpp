@@ -76,7 +76,13 @@ void VideoMaker::stop() {
   stop_ = true;
 }
 
-/// When the owner was last served; of many owners the one that was longest ago is forgotten.
+/// The turn in which the owner was last served; 0: in none that is remembered.
+uint64_t VideoMaker::last_turn(const std::string& owner) const {
+  const auto last = served_.find(owner);
+  return last == served_.end() ? 0 : last->second;
+}
+
+/// The same to be set; of many owners the one that was longest ago is forgotten.
 uint64_t& VideoMaker::served(const std::string& owner) {
   constexpr size_t kMostRemembered = 1000;
   if (served_.size() >= kMostRemembered && !served_.contains(owner)) {
@@ -93,8 +99,7 @@ std::optional<JobId> VideoMaker::next_due() {
   uint64_t since = 0;
   for (auto it = due_.begin(); it != due_.end(); ++it) {
     const ActiveJob* active = jobs_.find(*it);
-    const auto last = served_.find(active == nullptr ? std::string() : active->stored.owner);
-    const uint64_t when = last == served_.end() ? 0 : last->second;
+    const uint64_t when = active == nullptr ? 0 : last_turn(active->stored.owner);
     if (best != due_.end() && when >= since) continue;
     best = it;
     since = when;
@@ -112,8 +117,7 @@ RequestedVideo* VideoMaker::next_asked() {
   uint64_t since = 0;
   for (RequestedVideo& video : asked_) {
     if (video.state != RequestedVideo::State::waiting) continue;
-    const auto last = served_.find(video.owner);
-    const uint64_t when = last == served_.end() ? 0 : last->second;
+    const uint64_t when = last_turn(video.owner);
     if (best != nullptr && when >= since) continue;
     best = &video;
     since = when;

@@ -56,6 +56,7 @@ class VideoMaker {
   bool make_of_job(JobId job) HYADES_EXCLUDES(state_lock);
   std::optional<JobId> next_due() HYADES_REQUIRES(state_lock);
   RequestedVideo* next_asked() HYADES_REQUIRES(state_lock);
+  uint64_t last_turn(const std::string& owner) const HYADES_REQUIRES(state_lock);
   uint64_t& served(const std::string& owner) HYADES_REQUIRES(state_lock);
   core::Result<bool> make_one(uint64_t id, const std::vector<core::VideoDesc>& videos,
                               const core::VideoFrames& frames);

@@ -11,9 +11,9 @@ namespace hyades::core {
 /// and comments gone). `root` is a map.
 std::string write_yaml(const YamlNode& root);
 
-/// The same with a mark (core/job/made_lines.h) before every entry of several lines' maps and lists
-/// that comes from another line of a script than the one before it. `script`: the file that stands
-/// in no mark.
+/// The root as write_yaml() does, with a mark (core/job/made_lines.h) before every entry of several
+/// lines' maps and lists that comes from another line of a script than the one before it. `script`:
+/// the file that stands in no mark.
 std::string write_yaml_of_script(const YamlNode& root, const std::string& script);
 
 }  // namespace hyades::core
