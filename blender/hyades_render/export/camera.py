@@ -1,0 +1,97 @@
+"""The scene's camera: perspective, orthographic or a panorama, with its shift and lens."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy
+from hyades import cameras
+
+from . import axes
+from .context import Context
+from .film import picture_size
+
+
+def add_camera(context: Context) -> None:
+    """Says the camera of the job. Without one in the scene the job keeps its default, with a complaint."""
+    camera = context.scene.camera
+    if camera is None:
+        context.complain("scene", "there is no camera")
+        return
+    context.job.camera = translated(context, camera)
+
+
+def translated(context: Context, camera: Any) -> cameras.Camera:
+    """An object of type CAMERA as the job's camera."""
+    data, where = camera.data, f"camera '{camera.name}'"
+    pose = Pose(camera.matrix_world)
+    placed = {"look_from": pose.place, "look_at": pose.ahead, "up": pose.up}
+    if data.type == "PANO":
+        kind = panorama_type(context, data)
+        if kind != "EQUIRECTANGULAR":
+            context.complain(where, f"panoramas of type {kind.lower()} are not supported; equirectangular is used")
+        return cameras.Equirectangular(**placed)
+    frame = Frame(context.scene.render, data)
+    lens = _lens(context, camera, pose, frame)
+    if data.type == "ORTHO":
+        return cameras.Orthographic(height=data.ortho_scale * frame.height, **placed, **lens)
+    fov = math.degrees(2 * math.atan(frame.sensor * frame.height / (2 * data.lens)))
+    return cameras.Perspective(fov=fov, shift=frame.shift, **placed, **lens)
+
+
+class Pose:
+    """Where a camera stands and looks, in the job's world."""
+
+    def __init__(self, matrix: Any) -> None:
+        matrix = axes.placed(matrix)
+        forward = -matrix[:3, 2] / numpy.linalg.norm(matrix[:3, 2])
+        self.forward = forward
+        self.place = axes.numbers(matrix[:3, 3])
+        self.ahead = axes.numbers(matrix[:3, 3] + forward)
+        self.up = axes.numbers(matrix[:3, 1] / numpy.linalg.norm(matrix[:3, 1]))
+
+
+class Frame:
+    """What the picture shows, in parts of the side that the sensor is fitted to."""
+
+    def __init__(self, render: Any, data: Any) -> None:
+        width, height = picture_size(render)
+        fit = data.sensor_fit
+        if fit == "AUTO":
+            fit = "HORIZONTAL" if width >= height else "VERTICAL"
+        fitted = width if fit == "HORIZONTAL" else height
+        self.height = height / fitted
+        # In AUTO the sensor's width counts, whichever side it is fitted to.
+        self.sensor = data.sensor_height if data.sensor_fit == "VERTICAL" else data.sensor_width
+        self.shift = [data.shift_x * fitted / width, data.shift_y * fitted / height]
+
+
+def panorama_type(context: Context, data: Any) -> str:
+    """Which panorama a camera takes: a key of Cycles until 4.x moved it to the camera itself."""
+    if hasattr(data, "panorama_type"):
+        return data.panorama_type
+    return getattr(getattr(data, "cycles", None), "panorama_type", "EQUIRECTANGULAR")
+
+
+def _lens(context: Context, camera: Any, pose: Pose, frame: Frame) -> dict[str, Any]:
+    """Aperture and focus; nothing where all is sharp."""
+    data = camera.data
+    if data.type == "ORTHO" and (data.shift_x or data.shift_y):
+        context.complain(f"camera '{camera.name}'", "orthographic cameras have no shift; it is left out")
+    dof = data.dof
+    if not dof.use_dof:
+        return {}
+    # Cycles: the focal length in metres over twice the f-stop; of an orthographic camera 1 over it.
+    length = data.lens / 1000 if data.type == "PERSP" else 1.0
+    aperture = cameras.Aperture(radius=length / (2 * max(dof.aperture_fstop, 1e-6)))
+    if dof.aperture_blades >= 3:
+        aperture.blades = min(dof.aperture_blades, 64)
+        aperture.rotation = math.degrees(dof.aperture_rotation)
+    if dof.aperture_ratio != 1:
+        context.complain(f"camera '{camera.name}'", "apertures are round or regular; the ratio is left out")
+    distance = dof.focus_distance
+    if dof.focus_object is not None:
+        there = axes.placed(dof.focus_object.matrix_world)[:3, 3]
+        distance = abs(float(numpy.dot(there - numpy.array(pose.place), pose.forward)))
+    return {"aperture": aperture, "focus": max(distance, 1e-6)}

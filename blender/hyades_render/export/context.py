@@ -1,0 +1,57 @@
+"""What an export carries along: the job that grows, complaints, and what was made already."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import hyades
+
+
+@dataclass(frozen=True)
+class Complaint:
+    """Something in the scene that the job does not say, or says in another way."""
+
+    where: str
+    """The thing by its name in Blender: "material 'Floor' > node 'Noise Texture'"."""
+    what: str
+    """What is different, and what was done instead."""
+
+    def __str__(self) -> str:
+        return f"{self.where}: {self.what}"
+
+
+class Context:
+    """One export of one depsgraph."""
+
+    def __init__(self, depsgraph: Any, settings: Any) -> None:
+        self.depsgraph = depsgraph
+        self.scene = depsgraph.scene_eval
+        self.settings = settings
+        self.job = hyades.Job()
+        self.complaints: list[Complaint] = []
+        self.materials: dict[Any, Any] = {}  # translated ones, by what they depend on
+        self.meshes: dict[Any, Any] = {}  # parts of meshes by their data
+
+    def complain(self, where: str, what: str) -> None:
+        """Notes a difference once."""
+        complaint = Complaint(where, what)
+        if complaint not in self.complaints:
+            self.complaints.append(complaint)
+
+    def setting(self, name: str, default: Any = None) -> Any:
+        """A property of the add-on's settings; `default` where it has none of that name."""
+        return getattr(self.settings, name, default)
+
+
+def free_name(wanted: str, taken: Any) -> str:
+    """A name that the job accepts, like `wanted`, and that `taken` does not hold."""
+    allowed = "".join(c if c.isascii() and (c.isalnum() or c in "_-. ") else "_" for c in wanted).strip(" ")
+    if not allowed or not (allowed[0].isalnum() or allowed[0] == "_"):
+        allowed = "_" + allowed
+    name = allowed = allowed[:90].rstrip(" ")
+    number = 1
+    while name in taken:
+        number += 1
+        name = f"{allowed}-{number}"
+    return name

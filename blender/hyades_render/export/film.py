@@ -1,0 +1,61 @@
+"""The picture: its size, border and filter, samples, depth of paths, frames, and how light is shown."""
+
+from __future__ import annotations
+
+import math
+
+import hyades
+from hyades import integrators
+
+from .context import Context
+
+_FILTERS = {"BOX": "box", "GAUSSIAN": "gaussian", "BLACKMAN_HARRIS": "blackman-harris"}
+
+
+def add_film(context: Context) -> None:
+    """Says film, sampling, integrator and frames of the job."""
+    render = context.scene.render
+    size = picture_size(render)
+    film = hyades.Film(size=size, filter=_filter(context))
+    if render.use_border:
+        film.crop = _crop(render, size)
+    context.job.film = film
+    if render.pixel_aspect_x != render.pixel_aspect_y:
+        context.complain("output", "pixels that are not square are not supported; square ones are used")
+    context.job.sampling = hyades.Sampling(samples=int(context.setting("samples", 64)))
+    if context.setting("noise", 0) > 0:
+        context.job.sampling.noise = context.setting("noise", 0)
+    context.job.integrator = integrators.Path(max_depth=int(context.setting("max_depth", 32)))
+    fps = render.fps / render.fps_base
+    context.job.frames = hyades.Frames(range=max(context.scene.frame_current, 0), fps=fps)
+
+
+def picture_size(render) -> list[int]:
+    """Width and height of the whole picture [pixels], as Blender counts them."""
+    share = render.resolution_percentage
+    return [max(int(render.resolution_x * share / 100), 1), max(int(render.resolution_y * share / 100), 1)]
+
+
+def exposure_stops(context: Context) -> float:
+    """By how many stops pictures for displays are brighter than the light."""
+    stops = float(context.scene.view_settings.exposure)
+    cycles = getattr(context.scene, "cycles", None)
+    film_exposure = getattr(cycles, "film_exposure", 1.0)
+    return stops + (math.log2(film_exposure) if film_exposure > 0 else 0.0)
+
+
+def _filter(context: Context) -> hyades.Filter:
+    cycles = getattr(context.scene, "cycles", None)
+    kind = _FILTERS[getattr(cycles, "pixel_filter_type", "BLACKMAN_HARRIS")]
+    if kind == "box":
+        return hyades.Filter(type="box", radius=0.5)
+    width = getattr(cycles, "filter_width", context.scene.render.filter_size)
+    return hyades.Filter(type=kind, radius=max(width / 2, 0.01))
+
+
+def _crop(render, size: list[int]) -> list[int]:
+    """The border in pixels, with row 0 at the top."""
+    width, height = size
+    x0, x1 = round(render.border_min_x * width), round(render.border_max_x * width)
+    y0, y1 = round((1 - render.border_max_y) * height), round((1 - render.border_min_y) * height)
+    return [x0, y0, max(x1, x0 + 1), max(y1, y0 + 1)]
