@@ -1,0 +1,55 @@
+"""A scene with the settings of the add-on as a job: what the exporter says, and how it is rendered."""
+
+from __future__ import annotations
+
+import re
+from typing import Any
+
+import hyades
+from hyades import integrators, outputs
+
+from .export import Exported, export_job
+
+
+def scene_job(depsgraph: Any, layers: list[str], name: str = "blender") -> Exported:
+    """The job of a depsgraph's current frame, which writes one EXR with these layers: NAME.exr."""
+    scene = depsgraph.scene
+    exported = export_job(depsgraph, settings=scene.hyades)
+    job = exported.job
+    job.name = name
+    apply_settings(job, scene.hyades)
+    job.outputs = [outputs.Exr(file=f"{name}.exr", layers=layers)]
+    return exported
+
+
+def apply_settings(job: hyades.Job, settings: Any) -> None:
+    """Says sampling, integrator and denoising as `scene.hyades` has them."""
+    job.sampling = hyades.Sampling(samples=settings.samples, seed=settings.seed)
+    if settings.noise > 0:
+        job.sampling.noise = settings.noise
+        job.sampling.min_samples = min(settings.min_samples, settings.samples)
+    depths = {"max_depth": settings.max_depth, "roulette_depth": settings.roulette_depth}
+    if settings.integrator == "bdpt":
+        job.integrator = integrators.Bdpt(**depths)
+    elif settings.integrator == "mlt":
+        job.integrator = integrators.Mlt(over=settings.mlt_over, large_step=settings.large_step, **depths)
+    else:
+        job.integrator = integrators.Path(clamp=settings.clamp, **depths)
+    if settings.denoise != "none":
+        job.denoise = True if settings.denoise == "true" else settings.denoise
+
+
+def job_name(text: str, default: str = "blender") -> str:
+    """`text` as the name of a job: 1 to 100 letters, digits, _, -, . and inner spaces."""
+    name = re.sub(r"[^A-Za-z0-9_\-. ]", "_", text).strip(" ").lstrip("-.")[:100].rstrip(" ")
+    return name or default
+
+
+def name_in_blender(job: hyades.Job, thing: Any) -> str | None:
+    """What wrote a line of the job, by its name: "object 'Cube'". None where it has none."""
+    sections = {"material": job.materials, "object": job.objects, "light": job.lights, "texture": job.textures}
+    for kind, section in sections.items():
+        for name, one in section.items():
+            if one is thing:
+                return f"{kind} '{name}'"
+    return None
