@@ -12,6 +12,7 @@ from .errors import KeyRefused
 
 _UNSET: Any = type("Unset", (), {"__repr__": lambda self: "(not said)"})()
 _COLLECTIONS = {"entries": dict, "list": list}
+_ENOUGH = ("like", "quaternion")  # beside them nothing else has to be said
 
 
 @dataclass
@@ -89,8 +90,8 @@ class Described:
                 yield described, value
 
     def missing(self) -> list[str]:
-        """Keys that must be there, and are not; none where `like` brings others' keys."""
-        if self.__dict__.get("like"):
+        """Keys that must be there, and are not; none where `like` brings others' keys, or one key says it all."""
+        if any(self.__dict__.get(name) is not None for name in _ENOUGH):
             return []
         return [n for n, k in self.keys().items() if k.required and n not in self.__dict__]
 

@@ -58,6 +58,13 @@ class Keys(unittest.TestCase):
         job.materials["x"] = materials.Mix(like="y")
         job.yaml()
 
+    def test_a_quaternion_needs_no_axis(self) -> None:
+        turned = hyades.Step(rotate=hyades.Rotation(quaternion=[0, 0.6, 0, 0.8]))
+        job = hyades.Job(objects={"x": objects.Sphere(transform=[turned])})
+        self.assertIn("quaternion: [0, 0.6, 0, 0.8]", job.yaml())
+        job.objects["x"].transform = [hyades.Step(rotate=hyades.Rotation(angle=30))]
+        self.refused("has no axis", job.yaml)
+
 
 class Text(unittest.TestCase):
     def test_a_job_as_yaml(self) -> None:
