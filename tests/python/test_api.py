@@ -7,6 +7,7 @@ import unittest
 
 from environment import ROOT
 
+from hyades import Farm
 from hyades.farm import states
 
 try:
@@ -42,6 +43,12 @@ class Api(unittest.TestCase):
         self.assertGreater(len(called), 12)
         for path in called:
             self.assertIn(re.sub(r"\{[^}]+\}", "X", path), known)
+
+    def test_pages_of_the_dashboard_are_those_of_its_router(self) -> None:
+        router = (ROOT / "coordinator/web/dashboard/router.js").read_text()
+        self.assertIn("path = `#/jobs/${job}", router)
+        self.assertEqual(Farm("127.0.0.1:8080").dashboard(12), "http://127.0.0.1:8080/#/jobs/12")
+        self.assertEqual(Farm("http://[::1]:81").dashboard(), "http://[::1]:81/")
 
 
 if __name__ == "__main__":

@@ -55,6 +55,12 @@ class Farm:
     def __repr__(self) -> str:
         return f"Farm({self._http.host}:{self._http.port})"
 
+    def dashboard(self, job: JobId | None = None) -> str:
+        """The address of its dashboard, or of a job's page there, for people."""
+        host = f"[{self._http.host}]" if ":" in self._http.host else self._http.host
+        page = f"{'https' if self._http.secure else 'http'}://{host}:{self._http.port}/"
+        return page if job is None else f"{page}#/jobs/{_id(job)}"
+
     # Jobs.
 
     def submit(
