@@ -1,44 +1,104 @@
-"""A scene as one job: its current frame, or all frames of its range."""
+"""A scene as one job: its current frame, or all frames of its range, with the files that its output properties name."""
 
 from __future__ import annotations
 
+import re
+from collections.abc import Iterator
+from pathlib import Path
 from typing import Any
 
+import bpy
+import hyades
 from hyades import outputs
 
-from . import capture, export, scene_job
+from . import capture, passes, scene_job
+from .export import Complaint, Exported
+from .moving import Moments, frames_of
+
+# Without a configuration of OpenColorIO: curves of Hyades by the names of Blender's views.
+_TONE_MAPS = {"Standard": "srgb", "Filmic": "filmic", "AgX": "agx", "Raw": "linear"}
+_EXR = ("OPEN_EXR", "OPEN_EXR_MULTILAYER")
 
 
-def job_of(scene: Any, *, whole: bool, name: str) -> export.Exported:
+def job_of(scene: Any, *, whole: bool, name: str) -> Exported:
     """The job of a scene as a final render sees it; `whole`: of all its frames. For the main thread, while
     nothing is rendered. ValueError where it cannot be said."""
-    exported = export_frames(scene) if whole else capture.look_at_final(scene, _export_one)
-    exported.job.name = scene_job.job_name(name)
-    scene_job.apply_settings(exported.job, scene.hyades)
-    exported.job.outputs = _outputs(scene, exported.job.name, whole)
-    return exported
+    *_, last = steps(scene, whole=whole, name=name)
+    return last
 
 
-def export_frames(scene: Any) -> export.Exported:
-    """All frames of the scene's range."""
-    raise ValueError("animations are not exported yet")
+def steps(scene: Any, *, whole: bool, name: str) -> Iterator[Any]:
+    """The same, frame by frame: yields texts that tell how far it is, and the Exported in the end."""
+    frames = frames_of(scene) if whole else range(scene.frame_current, scene.frame_current + 1)
+    if len(frames) == 0 or frames[0] < 0:
+        raise ValueError(f"frames {scene.frame_start} to {scene.frame_end}: expected at least one, from 0 on")
+    return _steps(scene, frames, whole, name)
 
 
-def _export_one(depsgraph: Any) -> export.Exported:
-    return export.export_job(depsgraph, settings=depsgraph.scene.hyades)
+def _steps(scene: Any, frames: range, whole: bool, name: str) -> Iterator[Any]:
+    moments = Moments()
+    before = scene.frame_current, scene.frame_subframe
+    try:
+        for number, frame in enumerate(frames, start=1):
+            yield f"exporting frame {number} of {len(frames)}"
+            scene.frame_set(frame)
+            capture.look_at_final(scene, moments.export)
+    finally:
+        scene.frame_set(before[0], subframe=before[1])
+    text = f"{frames[0]}-{frames[-1]}" + (f"x{frames.step}" if frames.step > 1 else "")
+    exported = moments.job(text if len(frames) > 1 else frames[0])
+    job = exported.job
+    job.name = scene_job.job_name(name)
+    scene_job.apply_settings(job, scene.hyades)
+    job.outputs, more = _outputs(scene, job, len(frames) > 1)
+    yield Exported(job, [*exported.complaints, *more])
 
 
-def _outputs(scene: Any, name: str, whole: bool) -> list[outputs.Output]:
-    """An EXR with the passes of the scene's first view layer, and the picture as displays show it."""
-    from . import passes
-
-    number = ".####" if whole else ""
-    layer = next(layer for layer in scene.view_layers if layer.use)
-    layers = passes.layers_for(passes.asked_for(scene, layer))
-    picture = outputs.Png(file=f"{name}{number}.png", exposure=scene.view_settings.exposure)
-    picture.transparent = scene.render.film_transparent
-    picture.tone_map = _TONE_MAPS.get(scene.view_settings.view_transform, "srgb")
-    return [outputs.Exr(file=f"{name}{number}.exr", layers=layers), picture]
+def output_folder(scene: Any) -> Path:
+    """Where the scene's output goes, as an absolute path."""
+    path = bpy.path.abspath(scene.render.filepath)
+    return Path(path if path.endswith(("/", "\\")) else Path(path).parent).absolute()
 
 
-_TONE_MAPS = {"Standard": "srgb", "Filmic": "filmic", "AgX": "agx", "Raw": "linear"}
+def _outputs(scene: Any, job: hyades.Job, several: bool) -> tuple[list[outputs.Output], list[Complaint]]:
+    """What the scene's output properties ask for, below the folder that they name."""
+    image, found = scene.render.image_settings, []
+    kind = image.file_format
+    stem = _stem(scene, job.name, several and kind != "FFMPEG")
+    shown: dict[str, Any] = {"exposure": scene.view_settings.exposure}
+    if job.color is None:
+        shown["tone_map"] = _TONE_MAPS.get(scene.view_settings.view_transform, "srgb")
+    see_through = scene.render.film_transparent and image.color_mode == "RGBA"
+    if kind in _EXR:
+        layer = next(layer for layer in scene.view_layers if layer.use)
+        wanted = passes.asked_for(scene, layer) if kind == "OPEN_EXR_MULTILAYER" else []
+        made: outputs.Output = outputs.Exr(
+            file=stem + ".exr", layers=passes.layers_for(wanted), half=image.color_depth == "16"
+        )
+    elif kind == "JPEG":
+        made = outputs.Jpg(file=stem + ".jpg", quality=max(image.quality, 1), **shown)
+    elif kind == "TIFF":
+        made = outputs.Tiff(file=stem + ".tif", transparent=see_through, bits=_bits(image), **shown)
+    elif kind == "FFMPEG" and several:
+        made = outputs.Video(file=stem + ".mp4", **shown)
+    else:
+        if kind not in ("PNG", "FFMPEG"):
+            found.append(Complaint("output", f"files of type {kind} are not written; PNG is"))
+        made = outputs.Png(file=stem + ".png", transparent=see_through, bits=_bits(image), **shown)
+    return [made], found
+
+
+def _bits(image: Any) -> int:
+    return 16 if image.color_depth == "16" else 8
+
+
+def _stem(scene: Any, name: str, several: bool) -> str:
+    """The name of files without its end: that of the output path, else the job's; `####` stands for the frame."""
+    path = scene.render.filepath
+    base = "" if path.endswith(("/", "\\")) else Path(bpy.path.abspath(path)).name
+    base = re.sub(r"\.(png|jpe?g|tiff?|exr|mp4|mov|mkv|avi)$", "", base, flags=re.IGNORECASE)
+    if not several:
+        return base.replace("#", "") or name
+    if "#" in base:
+        return base
+    return f"{base or name + '.'}####"

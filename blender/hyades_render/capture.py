@@ -9,28 +9,28 @@ from typing import Any
 
 import bpy
 
-_look: Callable[[Any], None] | None = None
+_look: Callable[[Any, Any], None] | None = None
 
 
-def taken(depsgraph: Any) -> bool:
+def taken(engine: Any, depsgraph: Any) -> bool:
     """Called by the engine: whether somebody only wanted a look at this depsgraph, and has had it."""
     if _look is None:
         return False
-    _look(depsgraph)
+    _look(engine, depsgraph)
     return True
 
 
-def look_at_final(scene: Any, look: Callable[[Any], Any]) -> Any:
-    """What `look` makes of the depsgraph of a final render of the scene's current frame and first view layer
-    that is rendered. Exceptions of `look` come through. For the main thread, while nothing is rendered."""
+def look_at_final(scene: Any, look: Callable[[Any, Any], Any]) -> Any:
+    """What `look` makes of an engine and the depsgraph of a final render of the scene's current frame, of the first
+    view layer that is rendered. Exceptions of `look` come through. For the main thread, while nothing is rendered."""
     global _look
     found: list[Any] = []
     wrong: list[BaseException] = []
 
-    def once(depsgraph: Any) -> None:
+    def once(engine: Any, depsgraph: Any) -> None:
         try:
             if not found and not wrong:
-                found.append(look(depsgraph))
+                found.append(look(engine, depsgraph))
         except BaseException as error:  # Blender would print it and go on
             wrong.append(error)
 

@@ -23,11 +23,16 @@ def of(scene: Any) -> list[Any] | None:
     return _kept.get(scene.name)
 
 
-def tell(reporter: Any, found: Sequence[Any]) -> None:
-    """Warns by `reporter.report`; without a window also on standard output, each on a line."""
+def print_all(found: Sequence[Any]) -> None:
+    """Without a window: on standard output, each on a line."""
     if bpy.app.background:
         for one in found:
             print(f"Hyades: warning: {one}", flush=True)
+
+
+def tell(reporter: Any, found: Sequence[Any]) -> None:
+    """Warns by `reporter.report`; without a window also on standard output, each on a line."""
+    print_all(found)
     if not found:
         return
     lines = [str(one) for one in found[:_MOST_TOLD]]

@@ -34,7 +34,7 @@ class HyadesRenderEngine(bpy.types.RenderEngine):
 
     def render(self, depsgraph: bpy.types.Depsgraph) -> None:
         """Renders one view layer of one frame."""
-        if capture.taken(depsgraph):
+        if capture.taken(self, depsgraph):
             return
         try:
             final_render.FinalRender(self, depsgraph).run()

@@ -60,7 +60,7 @@ class FinalRender:
                 shutil.rmtree(folder, ignore_errors=True)
 
     def _export(self) -> Any:
-        exported = scene_job.scene_job(self._depsgraph, passes.layers_for(self._passes))
+        exported = scene_job.scene_job(self._engine, self._depsgraph, passes.layers_for(self._passes))
         if self._engine.is_preview:
             exported.job.sampling = hyades.Sampling(samples=_PREVIEW_SAMPLES)
             exported.job.integrator = None

@@ -18,6 +18,7 @@ import numpy
 from .render_process import RenderProcess, refusal
 from .viewer import Viewer
 
+_CHANNELS = ("R", "G", "B", "A", "samples.N")
 _COARSE_SAMPLES = 4
 _COARSE_SCALE = 0.25
 _PATIENCE = 1.0  # seconds that a coarse picture gets though the view has changed, so that a moving view shows something
@@ -141,12 +142,13 @@ class Refiner:
                         seen, next_time = viewer.changes(), now + _SHOWS_EVERY
                         # A coarse run's first parts would be smaller news than what is there.
                         if not options:
-                            self._take(viewer.pixels())
+                            self._take(viewer.pixels(_CHANNELS))
                     time.sleep(_LOOKS_EVERY)
                 error = process.ending_error()
                 if error is not None:
                     raise hyades.HyadesError(refusal(error))
-                self._take(viewer.pixels())
+                viewer.wait_for_rest(1.0)
+                self._take(viewer.pixels(_CHANNELS))
             finally:
                 process.stop()
         return self._asked == asked and not self._closed
@@ -157,10 +159,15 @@ class Refiner:
         self._say(f"{share:.0%}{noise}")
 
     def _take(self, picture: numpy.ndarray | None) -> None:
+        """A new picture, with the number of samples as its fifth channel; what has none yet stays as it was."""
         if picture is None:
             return
+        seen = picture[:, :, 4:] > 0
+        picture = picture[:, :, :4]
+        if self._picture is not None and not seen.all():
+            picture = numpy.where(seen, picture, _resized(self._picture, *picture.shape[:2]))
         with self._wake:
-            self._picture = picture
+            self._picture = numpy.ascontiguousarray(picture)
             self._number += 1
         self._on_news()
 
@@ -168,3 +175,10 @@ class Refiner:
         if words != self._words:
             self._words = words
             self._on_news()
+
+
+def _resized(picture: numpy.ndarray, height: int, width: int) -> numpy.ndarray:
+    """To the nearest pixel."""
+    rows = numpy.arange(height) * picture.shape[0] // height
+    columns = numpy.arange(width) * picture.shape[1] // width
+    return picture[rows[:, None], columns[None, :]]

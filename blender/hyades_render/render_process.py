@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import os
 import queue
+import signal
 import subprocess
 import tempfile
 import threading
@@ -14,8 +15,6 @@ from typing import Any
 
 import hyades
 from hyades.errors import complaints_in
-
-_ENDS_WITHIN = 0.6  # seconds, after it was asked to; Esc has to be answered within one
 
 
 class RenderProcess:
@@ -58,14 +57,13 @@ class RenderProcess:
         return found
 
     def stop(self) -> None:
-        """Ends it, within a second."""
+        """Ends it at once: all that it writes lies in a temporary folder, so nothing is worth a wait."""
         if self.running():
-            self._process.terminate()
             try:
-                self._process.wait(_ENDS_WITHIN)
-            except subprocess.TimeoutExpired:
-                self._process.kill()
-                self._process.wait()
+                os.killpg(self._process.pid, signal.SIGKILL) if os.name == "posix" else self._process.kill()
+            except ProcessLookupError:
+                pass  # it has ended meanwhile
+            self._process.wait()
         self.close()
 
     def close(self) -> None:

@@ -8,13 +8,17 @@ from typing import Any
 import hyades
 from hyades import integrators, outputs
 
-from .export import Exported, export_job
+from .export import Exported
+from .moving import Moments
 
 
-def scene_job(depsgraph: Any, layers: list[str], name: str = "blender") -> Exported:
-    """The job of a depsgraph's current frame, which writes one EXR with these layers: NAME.exr."""
+def scene_job(engine: Any, depsgraph: Any, layers: list[str], name: str = "blender") -> Exported:
+    """The job of a depsgraph's current frame, which writes one EXR with these layers: NAME.exr. For render()
+    of an engine."""
     scene = depsgraph.scene
-    exported = export_job(depsgraph, settings=scene.hyades)
+    moments = Moments()
+    moments.export(engine, depsgraph)
+    exported = moments.job(max(scene.frame_current, 0))
     job = exported.job
     job.name = name
     apply_settings(job, scene.hyades)

@@ -1,10 +1,12 @@
-"""Pictures as `hyades render --display` sends them while they are rendered (docs/display.md): tev's packets over TCP."""
+"""Pictures that `hyades render --display` sends while they are rendered (docs/display.md): tev's packets over TCP."""
 
 from __future__ import annotations
 
 import socket
 import struct
 import threading
+import time
+from collections.abc import Sequence
 
 import numpy
 
@@ -23,7 +25,7 @@ class Picture:
         self.values = numpy.zeros((height, width, len(channels)), numpy.float32)
         self.changes = 0
 
-    def pixels(self, names: str = "RGBA") -> numpy.ndarray:
+    def pixels(self, names: Sequence[str] = "RGBA") -> numpy.ndarray:
         """The channels `names`, (height, width, len(names)), row 0 at the top; those that are not there are 1."""
         picture = numpy.ones((self.height, self.width, len(names)), numpy.float32)
         for at, name in enumerate(names):
@@ -42,6 +44,8 @@ class Viewer:
         self._pictures: dict[str, Picture] = {}
         self._newest = ""
         self._closed = False
+        self._silent = threading.Event()  # nobody is connected
+        self._silent.set()
         self._thread = threading.Thread(target=self._run, name="hyades-viewer", daemon=True)
         self._thread.start()
 
@@ -61,13 +65,18 @@ class Viewer:
         self._closed = True
         self._thread.join()
 
+    def wait_for_rest(self, seconds: float) -> None:
+        """Waits until all that a renderer has sent before it ended is here, for so long at most."""
+        time.sleep(0.02)  # for a connection that waits to be accepted
+        self._silent.wait(seconds)
+
     def changes(self) -> int:
         """How many parts of the newest picture have come."""
         with self._lock:
             newest = self._pictures.get(self._newest)
             return newest.changes if newest else 0
 
-    def pixels(self, names: str = "RGBA") -> numpy.ndarray | None:
+    def pixels(self, names: Sequence[str] = "RGBA") -> numpy.ndarray | None:
         """The newest picture's channels, see Picture; None before there is one."""
         with self._lock:
             newest = self._pictures.get(self._newest)
@@ -82,12 +91,14 @@ class Viewer:
                     continue
                 except OSError:
                     return
+                self._silent.clear()
                 with connection:
                     connection.settimeout(0.2)
                     try:
                         self._read(connection)
                     except (OSError, ValueError, struct.error, EOFError):
-                        pass  # not what a renderer says: it may come again
+                        pass  # its end, or not what a renderer says: it may come again
+                self._silent.set()
 
     def _read(self, connection: socket.socket) -> None:
         while not self._closed:

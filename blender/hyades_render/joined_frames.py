@@ -1,0 +1,216 @@
+"""Jobs of single moments become one job that moves: what differs from moment to moment becomes keys."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import hyades
+import numpy
+from hyades import Keys, MeshData
+from hyades.described import Described, Key
+
+from . import moving_transform
+from .export import Complaint
+
+_GONE = 1e-6  # what an object that is not there is scaled by: everything has to have an inverse
+_STRENGTHS = ("power", "irradiance", "strength")
+_MESH = ("positions", "triangles", "normals", "uvs", "second_uvs", "colors", "tangents")
+
+
+def share(before: hyades.Job, now: hyades.Job) -> None:
+    """Puts what `before` has in the stead of what is equal at the same place of `now`: the frames of a film of one
+    room need one room's memory, and what stays the same is one thing."""
+    _share(before, now, {})
+
+
+def join(moments: Sequence[float], jobs: Sequence[hyades.Job]) -> tuple[hyades.Job, list[Complaint]]:
+    """One job that is each of `jobs` at its moment [frames, rising], and what of them it cannot say. Between
+    moments values move on straight lines. The range of frames is that of the first job."""
+    joined = _Join(moments)
+    return joined.described(list(jobs), "scene"), joined.complaints
+
+
+class _Join:
+    def __init__(self, moments: Sequence[float]) -> None:
+        self._moments = list(moments)
+        self._made: dict[int, Any] = {}  # by the first moment's thing: others may name it
+        self.complaints: list[Complaint] = []
+
+    def described(self, things: list[Any], where: str) -> Any:
+        """Things of one kind as one."""
+        first = things[0]
+        if id(first) in self._made:
+            return self._made[id(first)]
+        if all(_same(first, thing) for thing in things[1:]) and not isinstance(first, hyades.Job):
+            self._made[id(first)] = first
+            return first
+        made = type(first)()
+        self._made[id(first)] = made
+        for name, key in type(first).keys().items():
+            if name == "frames":
+                made.frames = first.frames
+                continue
+            values = [thing.__dict__.get(name) for thing in things]
+            if any(value is not None for value in values):
+                setattr(made, name, self._value(key, values, f"{where} > {name}", key.default))
+        return made
+
+    def _value(self, key: Key, values: list[Any], where: str, default: Any) -> Any:
+        first = values[0]
+        if key.takes == "entries":
+            return self._entries(values, key.name)
+        if all(_same(first, value) for value in values[1:]):
+            return self.described(values, where) if isinstance(first, Described) else first
+        if key.takes == "list of steps":
+            return self._steps(values, where)
+        values = [default if value is None else value for value in values]
+        first = values[0]
+        if isinstance(first, Described) and all(type(value) is type(first) for value in values):
+            return self.described(values, where)
+        if all(isinstance(value, MeshData) for value in values) and key.takes == "mesh file":
+            return self._meshes(values)
+        if "animated" in key.takes or key.takes.startswith(("colour or", "number or")):
+            if all(_is_plain(value) for value in values):
+                return self._keys(values)
+        if isinstance(first, (list, tuple)) and all(isinstance(v, (list, tuple)) for v in values):
+            if len({len(value) for value in values}) == 1 and all(isinstance(v, Described) for v in first):
+                return [self._value(key, list(column), where, None) for column in zip(*values)]
+        return self._complain(where, first)
+
+    def _keys(self, values: list[Any]) -> Keys:
+        """Values by moment, without those that lie between equal ones."""
+        if any(isinstance(value, (list, tuple)) for value in values):
+            width = max(len(value) for value in values if isinstance(value, (list, tuple)))
+            values = [list(v) if isinstance(v, (list, tuple)) else [v] * width for v in values]
+        last = len(values) - 1
+        kept = {
+            moment: value
+            for at, (moment, value) in enumerate(zip(self._moments, values))
+            if at in (0, last) or not (values[at - 1] == value == values[at + 1])
+        }
+        return Keys(kept)
+
+    def _meshes(self, meshes: list[MeshData]) -> dict[int, MeshData]:
+        """A mesh for each frame; while the shutter is open it moves on a straight line to that of the next one, which
+        is made where it is not there."""
+        by_time = dict(zip(self._moments, meshes))
+        by_frame = {int(m): mesh for m, mesh in by_time.items() if float(m).is_integer()}
+        for frame, mesh in list(by_frame.items()):
+            closes = [m for m in by_time if frame < m < frame + 1]
+            if closes and frame + 1 not in by_frame:
+                by_frame[frame + 1] = _onwards(mesh, by_time[closes[-1]], closes[-1] - frame)
+        return by_frame
+
+    def _steps(self, values: list[Any], where: str) -> Any:
+        """A transform that moves. None: it does nothing."""
+        moving = moving_transform.joined(values, self._keys)
+        return self._complain(where, values[0]) if moving is None else moving
+
+    def _entries(self, values: list[Any], section: str) -> dict[str, Any]:
+        """A section: its things by name. What is not there all the time is made tiny or dark meanwhile."""
+        names = dict.fromkeys(name for value in values for name in value or ())
+        made = {}
+        for name in names:
+            there = [(value or {}).get(name) for value in values]
+            present = [thing for thing in there if thing is not None]
+            where = f"{section.rstrip('s')} '{name}'"
+            if any(type(thing) is not type(present[0]) for thing in present):
+                made[name] = self._complain(where, present[0])
+                continue
+            filled = [_nearest(there, at) for at in range(len(there))]
+            made[name] = self.described(filled, where)
+            if len(present) < len(there):
+                self._come_and_go(made[name], self._frames_with(there), section, where)
+        return made
+
+    def _frames_with(self, there: list[Any]) -> list[bool]:
+        """For each moment: whether the thing is there at any moment of the same frame."""
+        frames = {int(moment) for moment, thing in zip(self._moments, there) if thing is not None}
+        return [int(moment) in frames for moment in self._moments]
+
+    def _come_and_go(self, thing: Any, there: list[bool], section: str, where: str) -> None:
+        if section == "objects":
+            size = Keys({m: 1.0 if is_there else _GONE for m, is_there in zip(self._moments, there)}, ease="step")
+            thing.transform = [hyades.Step(scale=size), *(thing.transform or [])]
+        elif section == "lights":
+            for name in _STRENGTHS:
+                if name in thing.keys() and _is_plain(getattr(thing, name)):
+                    full = getattr(thing, name)
+                    values = [full if is_there else 0.0 for is_there in there]
+                    setattr(thing, name, Keys(dict(zip(self._moments, values)), ease="step"))
+                    return
+            self._complain(where, None)
+
+    def _complain(self, where: str, value: Any) -> Any:
+        words = "changes over time in a way that a job cannot say; it stays as it is at first"
+        complaint = Complaint(where.removeprefix("scene > "), words)
+        if complaint not in self.complaints:
+            self.complaints.append(complaint)
+        return value
+
+
+def _nearest(things: list[Any], at: int) -> Any:
+    """What is there at this moment, else at the nearest one."""
+    near = sorted(range(len(things)), key=lambda other: abs(other - at))
+    return next(things[other] for other in near if things[other] is not None)
+
+
+def _onwards(start: MeshData, end: MeshData, span: float) -> MeshData:
+    """Where a mesh is a frame after `start`, if it goes on as it does within `span` frames, when it is `end`."""
+    if not numpy.array_equal(start.triangles, end.triangles) or start.positions.shape != end.positions.shape:
+        return end  # another mesh: it stands still while the shutter is open
+    made = MeshData(start.positions + (end.positions - start.positions) / span, start.triangles)
+    for name in _MESH[2:]:
+        setattr(made, name, getattr(start, name))
+    if start.normals is not None and end.normals is not None:
+        made.normals = start.normals + (end.normals - start.normals) / span
+    return made
+
+
+def _is_plain(value: Any) -> bool:
+    """A number or several."""
+    if isinstance(value, (list, tuple)):
+        return all(isinstance(part, (int, float)) for part in value)
+    return isinstance(value, (int, float)) and not isinstance(value, bool)
+
+
+def _same(a: Any, b: Any) -> bool:
+    """Whether two values say the same thing."""
+    if a is b:
+        return True
+    if type(a) is not type(b):
+        return False
+    if isinstance(a, Described):
+        names = {key.name for key, _ in (*a.said(), *b.said())}
+        return all(_same(a.__dict__.get(name), b.__dict__.get(name)) for name in names)
+    if isinstance(a, numpy.ndarray):
+        return a.shape == b.shape and a.dtype == b.dtype and bool(numpy.array_equal(a, b))
+    if isinstance(a, Mapping):
+        return a.keys() == b.keys() and all(_same(value, b[name]) for name, value in a.items())
+    if isinstance(a, (list, tuple)):
+        return len(a) == len(b) and all(map(_same, a, b))
+    if hasattr(a, "encode") and not isinstance(a, str):
+        return _same(vars(a), vars(b))
+    return bool(a == b)
+
+
+def _share(before: Any, now: Any, done: dict[int, tuple[Any, Any]]) -> Any:
+    """`now`, or the equal value of `before`. `done`: what became of things, by their ids; others may name them."""
+    if id(now) in done:
+        return done[id(now)][1]
+    if not isinstance(now, Described):
+        is_array = isinstance(now, numpy.ndarray) or (hasattr(now, "encode") and not isinstance(now, str))
+        return before if is_array and _same(before, now) else now
+    result = before if _same(before, now) and not isinstance(now, hyades.Job) else now
+    done[id(now)] = now, result
+    if result is before:
+        return result
+    for name, value in list(now.__dict__.items()):
+        theirs = before.__dict__.get(name) if type(before) is type(now) else None
+        if isinstance(value, dict):
+            for entry in value:
+                value[entry] = _share(theirs.get(entry) if isinstance(theirs, dict) else None, value[entry], done)
+        else:
+            now.__dict__[name] = _share(theirs, value, done)
+    return now

@@ -1,0 +1,86 @@
+"""Frames with their shutter: the scene is exported when it opens and when it closes, and joined to one job."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import hyades
+
+from . import joined_frames
+from .export import Complaint, Exported, export_job
+
+_POSITIONS = {"START": 0.0, "CENTER": -0.5, "END": -1.0}
+
+
+class Moments:
+    """What was exported so far, of one frame or many."""
+
+    def __init__(self) -> None:
+        self._times: list[float] = []
+        self._jobs: list[hyades.Job] = []
+        self._complaints: list[Complaint] = []
+        self._shutter = 0.0
+
+    def export(self, engine: Any, depsgraph: Any) -> None:
+        """The frame at which `depsgraph` stands. For render() of an engine: only engines may look at other times."""
+        scene = depsgraph.scene
+        frame = scene.frame_current
+        position, self._shutter = shutter(scene)
+        if self._shutter == 0:
+            self._add(frame, depsgraph)
+            return
+        try:
+            for time in (0.0, self._shutter):
+                _set_time(engine, frame + position * self._shutter + time)
+                self._add(frame + time, depsgraph)
+        finally:
+            _set_time(engine, frame)
+        if scene.render.motion_blur_shutter > 1:
+            self._complain("render", "the shutter is open for one frame at most; more is left out")
+
+    def job(self, frames: str | int) -> Exported:
+        """All that was exported, as a job of these frames."""
+        job, complaints = self._jobs[0], []
+        if len(self._jobs) > 1:
+            job, complaints = joined_frames.join(self._times, self._jobs)
+        job.frames = hyades.Frames(range=frames, fps=job.frames.fps, shutter=self._shutter)
+        for complaint in complaints:
+            self._complain(complaint.where, complaint.what)
+        return Exported(job, list(self._complaints))
+
+    def _add(self, time: float, depsgraph: Any) -> None:
+        exported = export_job(depsgraph, settings=depsgraph.scene.hyades)
+        if self._jobs:
+            joined_frames.share(self._jobs[-1], exported.job)
+        self._times.append(time)
+        self._jobs.append(exported.job)
+        for complaint in exported.complaints:
+            self._complain(complaint.where, complaint.what)
+
+    def _complain(self, where: str, what: str) -> None:
+        complaint = Complaint(where, what)
+        if complaint not in self._complaints:
+            self._complaints.append(complaint)
+
+
+def shutter(scene: Any) -> tuple[float, float]:
+    """When the shutter opens, in parts of its time before the frame (0 to -1), and for how long [frames]."""
+    render = scene.render
+    if not render.use_motion_blur:
+        return 0.0, 0.0
+    # Blender 4.2 made one property of what Cycles and Eevee had each.
+    position = getattr(render, "motion_blur_position", None) or getattr(
+        getattr(scene, "cycles", None), "motion_blur_position", "CENTER"
+    )
+    return _POSITIONS[position], min(render.motion_blur_shutter, 1.0)
+
+
+def frames_of(scene: Any) -> Sequence[int]:
+    """The frames that Blender renders of an animation."""
+    return range(scene.frame_start, scene.frame_end + 1, scene.frame_step)
+
+
+def _set_time(engine: Any, time: float) -> None:
+    frame = int(time // 1)
+    engine.frame_set(frame, time - frame)
