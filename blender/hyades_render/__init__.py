@@ -17,7 +17,16 @@ bl_info = {
 package.find_hyades()
 
 # In the order in which Blender learns of them. Imported when the add-on is switched on: the exporter is of use without.
-_MODULES = ("preferences", "properties", "engine", "panels", "export_operator")
+_MODULES = (
+    "preferences",
+    "properties",
+    "engine",
+    "panels",
+    "export_operator",
+    "farm_state",
+    "farm_operators",
+    "farm_panel",
+)
 
 
 def _modules() -> list:

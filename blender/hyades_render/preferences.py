@@ -59,6 +59,7 @@ class HyadesPreferences(bpy.types.AddonPreferences):
         column = layout.column(heading="Farm")
         for name in ("farm_address", "token_file", "ca_file", "insecure"):
             column.prop(self, name)
+        column.operator("hyades.test_farm")
 
 
 def get() -> "HyadesPreferences | None":
@@ -102,6 +103,11 @@ def farm(patience: float = 10.0) -> hyades.Farm:
         insecure=preferences.insecure,
         patience=patience,
     )
+
+
+def dashboard(job: int) -> str:
+    """The address of a job's page. FarmError, OSError, ValueError: the preferences are wrong."""
+    return farm().dashboard(job)
 
 
 def register() -> None:
