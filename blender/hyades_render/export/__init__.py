@@ -8,16 +8,13 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
-from .. import library  # noqa: F401  (finds the package hyades)
+import hyades
 
-import hyades  # noqa: E402
-
-from .camera import add_camera  # noqa: E402
-from .context import Complaint, Context  # noqa: E402
-from .film import add_film  # noqa: E402
-from .lights import add_light  # noqa: E402
-from .objects import add_objects  # noqa: E402
-from .world import add_world  # noqa: E402
+from .camera import add_camera
+from .context import Complaint, Context
+from .film import add_film
+from .objects import add_objects
+from .world import add_world
 
 __all__ = ["Complaint", "Exported", "export_job"]
 
@@ -39,8 +36,6 @@ def export_job(depsgraph: Any, *, settings: Any = None) -> Exported:
     context = Context(depsgraph, settings)
     add_film(context)
     add_camera(context)
-    lights = add_objects(context)
-    for instance in lights:
-        add_light(context, instance)
+    add_objects(context)
     add_world(context)
     return Exported(context.job, context.complaints)

@@ -1,33 +1,180 @@
-"""Lamps: point, spot, sun and area lights."""
+"""Lamps: point, spot, sun and area lights.
+
+Cycles' watts are not what a lamp gives off: an area has a radiance of
+P / (4 A). Tests hold these numbers against Cycles' pictures (tests/blender/scenes/lights.py).
+"""
 
 from __future__ import annotations
 
 import math
 from typing import Any, NamedTuple
 
+import bpy
+import hyades
 import numpy
-from hyades import lights
+from hyades import lights, materials, objects
 
 from . import axes
 from .context import Context, free_name
+from .nodes import graph, values
+from .nodes.translator import Translator
+
+_SIDES = 96
+"""Corners of an ellipse; its area is that of the true one."""
+
+
+_CONE = 256
+"""Pixels across the picture of a spot's cone."""
 
 
 class PlacedLight(NamedTuple):
     """A lamp and where it stands."""
 
     name: str
-    data: Any
+    object: Any
     matrix: numpy.ndarray
     """Into the job's world."""
+
+    @property
+    def where(self) -> str:
+        return f"light '{self.name}'"
+
+    @property
+    def at(self) -> list[float]:
+        return axes.numbers(self.matrix[:3, 3])
+
+    @property
+    def direction(self) -> numpy.ndarray:
+        """Where it shines to."""
+        return -self.matrix[:3, 2] / numpy.linalg.norm(self.matrix[:3, 2])
 
 
 def add_light(context: Context, light: PlacedLight) -> None:
     """Adds one lamp to the job, as a light or as a body that shines."""
-    if light.data.type == "POINT":
-        at = axes.numbers(light.matrix[:3, 3])
-        # Cycles' watts are those of a surface: a point of P gives P / pi all round.
-        power = light.data.energy / math.pi
-        point = lights.Point(at=at, color=axes.numbers(light.data.color), power=power)
-        context.job.lights[free_name(light.name, context.job.lights)] = point
-    else:
-        context.complain(f"light '{light.name}'", f"lights of type {light.data.type.lower()} are not supported yet")
+    data = light.object.data
+    color = _color(context, light)
+    if data.energy < 0 or values.is_constant(color, 0):
+        if data.energy < 0:
+            context.complain(light.where, "light below 0 is left out")
+        return
+    {"POINT": _add_point, "SPOT": _add_spot, "SUN": _add_sun, "AREA": _add_area}[data.type](context, light, color)
+    for key in ("use_shadow", "cycles.cast_shadow"):
+        owner = data.cycles if key.startswith("cycles.") and hasattr(data, "cycles") else data
+        if not getattr(owner, key.rpartition(".")[2], True):
+            context.complain(light.where, "everything throws shadows in its light")
+            break
+
+
+def _color(context: Context, light: PlacedLight) -> Any:
+    """Its colour times what its nodes say."""
+    data = light.object.data
+    color: Any = tuple(axes.numbers(data.color))
+    output = graph.output_node(data.node_tree, "OUTPUT_LIGHT") if data.use_nodes else None
+    if output is None:
+        return values.held(color, 0.0, 1e18)
+    found = graph.source(graph.find_input(output, (), "Surface"))
+    if not isinstance(found, graph.Output):
+        return 0.0
+    if found.node.type != "EMISSION":
+        context.complain(light.where, "only a shader Emission is supported; its own colour is used")
+        return values.held(color, 0.0, 1e18)
+    translator = Translator(context, light.where)
+    strength = values.number(translator.constant(found.input("Strength"), 1.0))
+    own = translator.constant(found.input("Color"), 1.0)
+    return values.held(values.product(color, values.product(own, strength)), 0.0, 1e18)
+
+
+def _add(context: Context, light: PlacedLight, made: lights.Light) -> None:
+    context.job.lights[free_name(light.name, context.job.lights)] = made
+
+
+def _add_body(context: Context, light: PlacedLight, body: objects.Object) -> None:
+    """A lamp that has a size, which the camera does not see."""
+    body.visible_to_camera = False
+    context.job.objects[free_name(light.name, context.job.objects)] = body
+
+
+def _add_point(context: Context, light: PlacedLight, color: Any) -> None:
+    data = light.object.data
+    power = float(data.energy)
+    radius = float(data.shadow_soft_size)
+    if radius <= 0:
+        _add(context, light, lights.Point(at=light.at, color=color, power=power))
+        return
+    emit = objects.Emit(color=color, power=power)
+    _add_body(context, light, objects.Sphere(radius=radius, at=light.at, material=materials.NullMaterial(), emit=emit))
+
+
+def _add_spot(context: Context, light: PlacedLight, color: Any) -> None:
+    data = light.object.data
+    half = data.spot_size / 2
+    ahead = axes.numbers(numpy.array(light.at) + light.direction)
+    keys = {"at": light.at, "look_at": ahead, "color": color, "power": float(data.energy)}
+    if data.shadow_soft_size > 0:
+        context.complain(light.where, "spots have no radius in the job; shadows are sharp")
+    stretch = numpy.linalg.norm(light.matrix[:3, :2], axis=0) / max(numpy.linalg.norm(light.matrix[:3, 2]), 1e-9)
+    is_round = numpy.allclose(stretch, 1, rtol=1e-3)
+    # Until 3.6 Cycles' cones were darker towards their edge, by the cosine.
+    is_plain = is_round and bpy.app.version >= (4, 0)
+    widest = math.atan(math.tan(min(half, 1.5)) * float(stretch.max()))
+    if not is_plain and widest < math.radians(80):
+        up = axes.numbers(light.matrix[:3, 1] / numpy.linalg.norm(light.matrix[:3, 1]))
+        picture = _cone(math.tan(widest), stretch, math.cos(half), data.spot_blend, bpy.app.version < (4, 0))
+        _add(context, light, lights.Projector(image=picture, up=up, fov=math.degrees(2 * widest), **keys))
+        return
+    # Blender's share is one of the cosine, the job's one of the angle; both fade alike between the two cones.
+    inner = math.acos(min(math.cos(half) + (1 - math.cos(half)) * data.spot_blend, 1.0))
+    blend = min(max(1 - inner / half, 0.0), 1.0)
+    _add(context, light, lights.Spot(angle=min(math.degrees(half), 180.0), blend=blend, **keys))
+
+
+def _cone(edge: float, stretch: numpy.ndarray, cosine: float, blend: float, darkens: bool) -> numpy.ndarray:
+    """What a spot throws on a plane that it faces, out to the tangent `edge`, as a picture (n, n, 3)."""
+    steps = ((numpy.arange(_CONE) + 0.5) / _CONE * 2 - 1) * edge
+    x, y = numpy.meshgrid(steps / stretch[0], -steps / stretch[1])
+    towards = 1 / numpy.sqrt(1 + x * x + y * y)
+    fade = (towards - cosine) / max((1 - cosine) * blend, 1e-6)
+    fade = numpy.clip(fade, 0, 1)
+    light = fade * fade * (3 - 2 * fade) * (towards if darkens else 1)
+    return numpy.repeat(light[:, :, None], 3, axis=2).astype("float16")
+
+
+def _add_sun(context: Context, light: PlacedLight, color: Any) -> None:
+    data = light.object.data
+    angle = min(math.degrees(data.angle), 90.0)
+    direction = axes.numbers(light.direction)
+    _add(context, light, lights.Sun(direction=direction, color=color, irradiance=float(data.energy), angle=angle))
+
+
+def _add_area(context: Context, light: PlacedLight, color: Any) -> None:
+    data = light.object.data
+    if data.spread < math.pi - 1e-4:
+        context.complain(light.where, "a spread below 180 degrees is not supported; it shines to all sides of its front")
+    width = data.size
+    height = data.size_y if data.shape in ("RECTANGLE", "ELLIPSE") else data.size
+    is_round = data.shape in ("DISK", "ELLIPSE")
+    mesh = _ellipse(width, height) if is_round else _rectangle(width, height)
+    stretch = numpy.linalg.norm(light.matrix[:3, :2], axis=0)
+    area = width * height * float(stretch[0] * stretch[1]) * (math.pi / 4 if is_round else 1.0)
+    if area <= 0:
+        context.complain(light.where, "a lamp without a size is left out")
+        return
+    emit = objects.Emit(color=color, radiance=data.energy / (4 * area))
+    body = objects.Mesh(mesh=mesh, material=materials.NullMaterial(), emit=emit, transform=axes.steps(light.matrix))
+    _add_body(context, light, body)
+
+
+def _rectangle(width: float, height: float) -> hyades.MeshData:
+    """Around the origin, facing -z as lamps of Blender do."""
+    x, y = width / 2, height / 2
+    return hyades.MeshData([[-x, -y, 0], [-x, y, 0], [x, y, 0], [x, -y, 0]], numpy.array([[0, 1, 2], [0, 2, 3]]))
+
+
+def _ellipse(width: float, height: float) -> hyades.MeshData:
+    """As a polygon of the same area."""
+    turns = numpy.arange(_SIDES) * 2 * numpy.pi / _SIDES
+    larger = math.sqrt(2 * math.pi / _SIDES / math.sin(2 * math.pi / _SIDES))
+    rim = numpy.stack([numpy.sin(turns) * width, numpy.cos(turns) * height, 0 * turns], axis=1) * larger / 2
+    around = numpy.arange(_SIDES)
+    triangles = numpy.stack([0 * around + _SIDES, around, (around + 1) % _SIDES], axis=1)
+    return hyades.MeshData(numpy.concatenate([rim, numpy.zeros((1, 3))]), triangles)

@@ -1,27 +1,77 @@
-"""Materials of Blender as materials of the job."""
+"""Materials of Blender as materials of the job, with what they shine and what fills them."""
 
 from __future__ import annotations
 
-from typing import Any
+from dataclasses import dataclass
+from typing import Any, Optional
 
-from hyades import materials
+from hyades import materials, media
 
 from .context import Context, free_name
+from .nodes import bsdfs, native, principled  # noqa: F401  (they register)
+from .nodes import graph, values
+from .nodes.closures import closure_of, with_opacity
+from .nodes.surface import PartOfSurface
+from .nodes.translator import Translator
+from .nodes.values import Value
+from .nodes.volumes import medium_of
 
 
-def material_of(context: Context, object: Any, slot: int) -> materials.Material:
+@dataclass(frozen=True)
+class Made:
     """What a slot of an object is made of."""
-    data = object.material_slots[slot].material if slot < len(object.material_slots) else None
+
+    material: Optional[materials.Material]
+    emission: Value
+    """Radiance [W/(m² sr)]; 0: it does not shine."""
+    interior: Optional[media.Medium]
+    uv_map: Optional[str]
+    """The UV map that its textures look at; None: none."""
+    color_attribute: Optional[str]
+    is_baked: bool
+
+
+def material_of(context: Context, part: PartOfSurface, data: Any) -> Made:
+    """Translates a material for a part of a mesh; once for all parts where it says the same of all."""
+    name = data.name_full if data is not None else ""
+    if name in context.materials:
+        return context.materials[name]
     if data is None:
-        return materials.Lambert(color=0.8)
-    if data.name in context.materials:
-        return context.materials[data.name]
-    color = data.diffuse_color[:3]
-    if data.use_nodes:
-        for node in data.node_tree.nodes:
-            if node.type == "BSDF_PRINCIPLED":
-                color = node.inputs["Base Color"].default_value[:3]
-    made = materials.Lambert(color=[float(c) for c in color])
-    context.materials[data.name] = made
-    context.job.materials[free_name(data.name, context.job.materials)] = made
+        made = Made(materials.Lambert(color=0.8), 0.0, None, None, None, False)
+        _named(context, "default", made.material)
+        context.materials[name] = made
+        return made
+    translator = Translator(context, f"material '{data.name}'", part)
+    translator.material = data
+    made = _translated(translator, data)
+    _named(context, data.name, made.material)
+    if not translator.is_of_surface:
+        context.materials[name] = made
     return made
+
+
+def _named(context: Context, name: str, material: Optional[materials.Material]) -> None:
+    if material is not None:
+        context.job.materials[free_name(name, context.job.materials)] = material
+
+
+def _translated(translator: Translator, data: Any) -> Made:
+    if not data.use_nodes or data.node_tree is None:
+        color = [float(part) for part in data.diffuse_color[:3]]
+        return Made(materials.Lambert(color=values.held(color)), 0.0, None, None, None, False)
+    output = graph.output_node(data.node_tree, "OUTPUT_MATERIAL")
+    if output is None:
+        translator.context.complain(translator.where, "it has no output; it is black")
+        return Made(materials.Black(), 0.0, None, None, None, False)
+    surface = graph.find_input(output, (), "Surface")
+    closure = closure_of(translator, surface)
+    medium = medium_of(translator, graph.find_input(output, (), "Volume"))
+    has_surface = surface is not None and surface.socket.is_linked
+    material = with_opacity(closure) or materials.Black()
+    if not has_surface and medium is not None:
+        material = materials.NullMaterial()
+    displacement = graph.find_input(output, (), "Displacement")
+    if displacement is not None and displacement.socket.is_linked:
+        translator.context.complain(translator.where, "displacement is not supported yet; the surface stays where it is")
+    emission = values.quotient(closure.emission, values.held(closure.opacity))
+    return Made(material, emission, medium, translator.uv_map, translator.color_attribute, translator.baked)

@@ -1,0 +1,113 @@
+"""The shaders of surfaces that do one thing."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from hyades import materials
+
+from . import values
+from .closures import Closure, shader
+from .graph import Output
+from .normals import normal_keys
+from .translator import Translator
+from .values import held
+
+
+def _color(translator: Translator, output: Output, name: str = "Color") -> Any:
+    return held(translator.value(output.input(name)))
+
+
+def _roughness(translator: Translator, output: Output) -> Any:
+    if getattr(output.node, "distribution", "") == "SHARP":
+        return 0.0
+    return held(translator.number(output.input("Roughness")))
+
+
+def _keeps_light(output: Output) -> bool:
+    return getattr(output.node, "distribution", "") == "MULTI_GGX"
+
+
+@shader("BSDF_DIFFUSE")
+def diffuse(translator: Translator, output: Output) -> Closure:
+    made = materials.Lambert(color=_color(translator, output), **normal_keys(translator, output))
+    roughness = held(translator.number(output.input("Roughness")))
+    if not values.is_constant(roughness, 0):
+        made.roughness = roughness
+    return Closure(made)
+
+
+@shader("BSDF_TRANSLUCENT")
+def translucent(translator: Translator, output: Output) -> Closure:
+    color = _color(translator, output)
+    return Closure(materials.DiffuseTransmission(color=0, transmitted=color, **normal_keys(translator, output)))
+
+
+@shader("BSDF_GLOSSY", "BSDF_ANISOTROPIC")
+def glossy(translator: Translator, output: Output) -> Closure:
+    color, roughness = _color(translator, output), _roughness(translator, output)
+    if not values.is_constant(translator.constant(output.input("Anisotropy"), 0.0), 0):
+        translator.complain(output.node, "its highlights are round: anisotropy is left out")
+    normals = normal_keys(translator, output)
+    if values.is_constant(roughness, 0):
+        return Closure(materials.Mirror(color=color, **normals))
+    # Both have alpha = roughness² of GGX, without Fresnel's factor.
+    made = materials.Glossy(color=color, reflectiveness=1, glossiness=values.rest(roughness), **normals)
+    made.multiple_scattering = _keeps_light(output)
+    return Closure(made)
+
+
+def dielectric(translator: Translator, output: Output, reflection: Any) -> materials.Dielectric:
+    """Glass, coloured where light goes through, and `reflection` where it is reflected."""
+    color = held(translator.constant(output.input("Color")))
+    made = materials.Dielectric(
+        ior=held(translator.constant(output.input("IOR"), 1.45), 0.01, 100.0),
+        transmission=color,
+        reflection=color if reflection is None else reflection,
+        multiple_scattering=_keeps_light(output),
+        **normal_keys(translator, output),
+    )
+    roughness = _roughness(translator, output)
+    if not values.is_constant(roughness, 0):
+        made.roughness = roughness
+    return made
+
+
+@shader("BSDF_GLASS")
+def glass(translator: Translator, output: Output) -> Closure:
+    return Closure(dielectric(translator, output, None))
+
+
+@shader("BSDF_REFRACTION")
+def refraction(translator: Translator, output: Output) -> Closure:
+    translator.complain(output.node, "it loses what glass would reflect; in Blender all light goes through")
+    return Closure(dielectric(translator, output, 0.0))
+
+
+@shader("BSDF_VELVET", "BSDF_SHEEN")
+def sheen(translator: Translator, output: Output) -> Closure:
+    translator.complain(output.node, "fuzz is that of Estevez and Kulla, another model")
+    roughness = translator.number(output.input("Sigma", "Roughness"), 0.5)
+    return Closure(materials.Sheen(color=_color(translator, output), roughness=held(roughness, 0.0, 1.0)))
+
+
+@shader("SUBSURFACE_SCATTERING")
+def subsurface(translator: Translator, output: Output) -> Closure:
+    scale = values.number(translator.constant(output.input("Scale"), 1.0))
+    made = subsurface_of(
+        translator, output, output.input("Color"), output.input("Radius"), scale,
+        output.input("Anisotropy", "Subsurface Anisotropy"),
+    )
+    return Closure(materials.NullMaterial(subsurface=made))
+
+
+def subsurface_of(
+    translator: Translator, output: Output, color: Any, radius: Any, scale: float, anisotropy: Any
+) -> materials.Subsurface:
+    """What light does within a body; radius times scale is how far it goes [m]."""
+    far = [max(part * scale, 1e-6) for part in values.color(translator.constant(radius, 0.01))]
+    made = materials.Subsurface(color=held(translator.constant(color, 0.8)), radius=far)
+    g = values.number(translator.constant(anisotropy, 0.0))
+    if g:
+        made.g = held(g, -0.99, 0.99)
+    return made

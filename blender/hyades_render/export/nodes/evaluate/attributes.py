@@ -1,0 +1,61 @@
+"""Nodes Attribute, Color Attribute and Object Info."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy
+
+from ...axes import array
+from ..graph import Output
+from ..translator import Inexpressible
+from .evaluator import LUMINANCE, Evaluator, computes
+
+Array = Any
+
+
+@computes("VERTEX_COLOR")
+def color_attribute(at: Evaluator, output: Output) -> Array:
+    color = at.points.color(output.node.layer_name)
+    return color[:, 3] if output.socket.identifier == "Alpha" else color[:, :3]
+
+
+@computes("ATTRIBUTE")
+def attribute(at: Evaluator, output: Output) -> Array:
+    node = output.node
+    if node.attribute_type != "GEOMETRY":
+        return _of_object(at, output)
+    value = at.points.attribute(node.attribute_name)
+    if output.socket.identifier == "Alpha":
+        return at.points.color(node.attribute_name)[:, 3]
+    return value @ LUMINANCE if output.socket.identifier == "Fac" else value
+
+
+def _of_object(at: Evaluator, output: Output) -> Array:
+    """A property of the object, or of its data."""
+    object, name = at.points.object(), output.node.attribute_name
+    if output.node.attribute_type not in ("OBJECT", "INSTANCER"):
+        raise Inexpressible(output, "attributes of the view layer are not supported")
+    for owner in (object, object.data):
+        found = owner.get(name, getattr(owner, name, None)) if owner is not None else None
+        if found is not None:
+            value = numpy.atleast_1d(numpy.array(found, float))
+            value = numpy.repeat(value, 3)[:3] if len(value) == 1 else value[:3]
+            return value.mean() if output.socket.identifier == "Fac" else value
+    return numpy.zeros(3) if output.socket.identifier != "Fac" else numpy.zeros(())
+
+
+@computes("OBJECT_INFO")
+def object_info(at: Evaluator, output: Output) -> Array:
+    object, kind = at.points.object(), output.socket.identifier
+    if kind == "Location":
+        return array(object.matrix_world)[:3, 3]
+    if kind == "Color":
+        return numpy.array(object.color[:3])
+    if kind == "Alpha":
+        return numpy.asarray(object.color[3])
+    if kind == "Object Index":
+        return numpy.asarray(float(object.pass_index))
+    if kind == "Material Index":
+        return numpy.asarray(float(at.translator.material.pass_index))
+    raise Inexpressible(output, f"'{output.socket.name}' is not supported")

@@ -1,0 +1,51 @@
+"""Nodes Texture Coordinate, UV Map and Geometry."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy
+
+from ...axes import array
+from ..graph import Output
+from ..translator import Inexpressible
+from .evaluator import Evaluator, computes, with_zero
+from .points import transformed, turned
+
+Array = Any
+
+
+@computes("TEX_COORD")
+def texture_coordinate(at: Evaluator, output: Output) -> Array:
+    kind = output.socket.identifier
+    if kind == "Generated":
+        return at.points.generated()
+    if kind == "UV":
+        return with_zero(at.points.uv(""))
+    if kind == "Normal":
+        return at.points.normal()
+    if kind == "Object":
+        other = output.node.object
+        if other is None:
+            return at.points.position()
+        world = transformed(at.points.matrix(), at.points.position())
+        there = numpy.linalg.inv(array(other.evaluated_get(at.translator.context.depsgraph).matrix_world))
+        return transformed(there, world)
+    raise Inexpressible(output, f"coordinates by {kind.lower()} are not supported")
+
+
+@computes("UVMAP")
+def uv_map(at: Evaluator, output: Output) -> Array:
+    return with_zero(at.points.uv(output.node.uv_map))
+
+
+@computes("NEW_GEOMETRY")
+def geometry(at: Evaluator, output: Output) -> Array:
+    kind = output.socket.identifier
+    if kind == "Position":
+        return transformed(at.points.matrix(), at.points.position())
+    if kind in ("Normal", "True Normal"):
+        return turned(at.points.matrix(), at.points.normal())
+    if kind == "Backfacing":
+        raise Inexpressible(output, "which side is seen is not known while it is computed")
+    raise Inexpressible(output, f"'{output.socket.name}' is not supported")

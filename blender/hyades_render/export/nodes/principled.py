@@ -1,0 +1,134 @@
+"""The Principled BSDF, as it was up to Blender 3.6 and as it is since 4.0."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+from hyades import materials
+
+from . import values
+from .bsdfs import subsurface_of
+from .closures import Closure, shader
+from .graph import Output
+from .normals import normal_keys
+from .translator import Translator
+from .values import Value, held
+
+
+@shader("BSDF_PRINCIPLED")
+def principled(translator: Translator, output: Output) -> Closure:
+    is_new = output.input("Specular IOR Level") is not None
+    made = materials.Principled(**_body(translator, output), **normal_keys(translator, output))
+    (_since_4_0 if is_new else _until_3_6)(translator, output, made)
+    _anisotropy(translator, output, made)
+    medium_keys = _subsurface(translator, output, is_new)
+    if medium_keys is not None:
+        made.subsurface = medium_keys
+    strength = translator.number(output.input("Emission Strength"), 0.0)
+    emission = values.product(translator.value(output.input("Emission Color", "Emission")), strength)
+    alpha = held(translator.number(output.input("Alpha"), 1.0))
+    return Closure(made, values.product(emission, alpha), alpha)
+
+
+def _said(key: str, value: Value, default: float) -> dict[str, Any]:
+    """A key that is not what it is by default."""
+    return {} if values.is_constant(value, default) else {key: value}
+
+
+def _body(translator: Translator, output: Output) -> dict[str, Any]:
+    keys: dict[str, Any] = {"base_color": held(translator.value(output.input("Base Color"), 0.8))}
+    keys |= _said("metallic", held(translator.number(output.input("Metallic"))), 0)
+    keys |= _said("roughness", held(translator.number(output.input("Roughness"), 0.5)), 0.5)
+    keys |= _said("transmission", held(translator.number(output.input("Transmission Weight", "Transmission"))), 0)
+    return keys
+
+
+def _until_3_6(translator: Translator, output: Output, made: materials.Principled) -> None:
+    """Specular is 0.08 of light at most, whatever the IOR; tints go towards the base's hue; a coat counts a quarter."""
+    ior = held(values.number(translator.constant(output.input("IOR"), 1.45)), 1.0, 100.0)
+    specular = translator.number(output.input("Specular"), 0.5)
+    if values.is_constant(made.transmission, 0):
+        if values.is_texture(specular):
+            made.specular = specular
+        else:  # the reflection straight on is 0.08 times specular
+            root = math.sqrt(min(0.08 * max(specular, 0.0), 0.99))
+            made.ior = max((1 + root) / (1 - root), 1.0)
+    else:
+        made.ior = ior
+    tint = held(translator.number(output.input("Specular Tint")))
+    if not values.is_constant(tint, 0):
+        made.specular_tint = _towards(translator, output, made, tint)
+    sheen = held(translator.number(output.input("Sheen")))
+    if not values.is_constant(sheen, 0):
+        made.sheen = sheen
+        made.sheen_tint = _towards(translator, output, made, held(translator.number(output.input("Sheen Tint"), 0.5)))
+        translator.complain(output.node, "fuzz (sheen) is that of Estevez and Kulla, another model")
+    coat = held(translator.number(output.input("Clearcoat")))
+    if not values.is_constant(coat, 0):
+        made.coat = values.product(coat, 0.25)
+        made.coat_roughness = held(translator.number(output.input("Clearcoat Roughness"), 0.03))
+    blur = translator.number(output.input("Transmission Roughness"))
+    if not values.is_constant(blur, 0) and not values.is_constant(made.transmission, 0):
+        translator.complain(output.node, "what is seen through is as rough as what is reflected")
+
+
+def _towards(translator: Translator, output: Output, made: materials.Principled, amount: Value) -> Value:
+    """From white to the base colour at full brightness."""
+    base = made.base_color
+    if values.is_texture(base):
+        base = translator.constant(output.input("Base Color"))
+    bright = values.number(values.color(base))
+    hue = tuple(min(part / bright, 1.0) if bright > 0 else 1.0 for part in values.color(base))
+    return held(values.mixed(1.0, hue, amount))
+
+
+def _since_4_0(translator: Translator, output: Output, made: materials.Principled) -> None:
+    made.ior = held(values.number(translator.constant(output.input("IOR"), 1.5)), 1.0, 100.0)
+    specular = held(translator.number(output.input("Specular IOR Level"), 0.5))
+    if not values.is_constant(specular, 0.5):
+        made.specular = specular
+    tint = held(translator.value(output.input("Specular Tint"), 1.0))
+    if not values.is_constant(tint, 1):
+        made.specular_tint = tint
+    sheen = held(translator.number(output.input("Sheen Weight")))
+    if not values.is_constant(sheen, 0):
+        made.sheen = sheen
+        made.sheen_tint = held(translator.value(output.input("Sheen Tint"), 1.0))
+        made.sheen_roughness = held(translator.number(output.input("Sheen Roughness"), 0.5))
+    coat = held(translator.number(output.input("Coat Weight")))
+    if not values.is_constant(coat, 0):
+        made.coat = coat
+        made.coat_roughness = held(translator.number(output.input("Coat Roughness"), 0.03))
+        made.coat_ior = held(values.number(translator.constant(output.input("Coat IOR"), 1.5)), 1.0, 100.0)
+        if not values.is_constant(translator.value(output.input("Coat Tint"), 1.0), 1):
+            translator.complain(output.node, "the coat has no colour in the job; its tint is left out")
+
+
+def _anisotropy(translator: Translator, output: Output, made: materials.Principled) -> None:
+    anisotropic = held(translator.number(output.input("Anisotropic")))
+    if values.is_constant(anisotropic, 0):
+        return
+    made.anisotropic = anisotropic
+    made.anisotropic_rotation = held(translator.number(output.input("Anisotropic Rotation")))
+    tangent = output.input("Tangent")
+    translator.uv_map = translator.uv_map if translator.uv_map is not None else ""
+    if tangent is not None and tangent.socket.is_linked:
+        translator.complain(output.node, "tangents are those of the UV map")
+
+
+def _subsurface(translator: Translator, output: Output, is_new: bool) -> Any:
+    """What is below the surface; None: nothing."""
+    share = values.number(translator.constant(output.input("Subsurface Weight", "Subsurface")))
+    if share <= 0:
+        return None
+    if share < 1 and is_new:
+        translator.complain(output.node, f"a body scatters light below its surface or not: a weight of {share:.2f} is {round(share)}")
+        if share < 0.5:
+            return None
+    # Up to 3.6 the weight makes the radius smaller, and the colour is one of its own.
+    scale = values.number(translator.constant(output.input("Subsurface Scale"), 1.0)) if is_new else share
+    color = output.input("Base Color") if is_new else output.input("Subsurface Color")
+    return subsurface_of(
+        translator, output, color, output.input("Subsurface Radius"), scale, output.input("Subsurface Anisotropy")
+    )

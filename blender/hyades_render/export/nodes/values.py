@@ -1,0 +1,110 @@
+"""What an input of a shader may be: a number, a colour, or a texture of the job; and arithmetic with them."""
+
+from __future__ import annotations
+
+from typing import Any, Union
+
+from hyades import textures
+
+Value = Union[float, "tuple[float, float, float]", textures.Texture]
+"""A number; linear [r, g, b]; or a texture."""
+
+_LUMINANCE = (0.2126, 0.7152, 0.0722)
+
+
+def is_texture(value: Value) -> bool:
+    return isinstance(value, textures.Texture)
+
+
+def color(value: Any) -> tuple[float, float, float]:
+    """A constant as three numbers."""
+    if isinstance(value, (int, float)):
+        return (float(value),) * 3
+    return (float(value[0]), float(value[1]), float(value[2]))
+
+
+def number(value: Value) -> Any:
+    """A constant as one number, its luminance; a texture as it is, whose luminance counts."""
+    if is_texture(value):
+        return value
+    if isinstance(value, (int, float)):
+        return float(value)
+    return sum(part * share for part, share in zip(value, _LUMINANCE))
+
+
+def held(value: Value, low: float = 0.0, high: float = 1.0) -> Any:
+    """A constant within these ends; of textures the renderer sees to it."""
+    if is_texture(value):
+        return value
+    if isinstance(value, (int, float)):
+        return min(max(float(value), low), high)
+    return [min(max(part, low), high) for part in value]
+
+
+def is_constant(value: Value, what: float) -> bool:
+    """Whether a value is this number everywhere."""
+    return not is_texture(value) and all(part == what for part in color(value))
+
+
+def product(a: Value, b: Value) -> Value:
+    if is_constant(a, 0) or is_constant(b, 0):
+        return 0.0
+    if is_constant(a, 1):
+        return b
+    if is_constant(b, 1):
+        return a
+    if is_texture(a) or is_texture(b):
+        texture, factor = (a, b) if is_texture(a) else (b, a)
+        return textures.Scale(input=texture, factor=_plain(factor))
+    if isinstance(a, (int, float)) and isinstance(b, (int, float)):
+        return float(a * b)
+    x, y = color(a), color(b)
+    return (x[0] * y[0], x[1] * y[1], x[2] * y[2])
+
+
+def total(a: Value, b: Value) -> Value:
+    if is_constant(a, 0):
+        return b
+    if is_constant(b, 0):
+        return a
+    if is_texture(a) or is_texture(b):
+        return textures.Add(a=_plain(a), b=_plain(b))
+    if isinstance(a, (int, float)) and isinstance(b, (int, float)):
+        return float(a + b)
+    x, y = color(a), color(b)
+    return (x[0] + y[0], x[1] + y[1], x[2] + y[2])
+
+
+def rest(a: Value) -> Value:
+    """1 - a."""
+    if is_texture(a):
+        return textures.Invert(input=a)
+    if isinstance(a, (int, float)):
+        return 1.0 - a
+    return (1 - a[0], 1 - a[1], 1 - a[2])
+
+
+def mixed(a: Value, b: Value, amount: Value) -> Value:
+    """a where amount is 0, b where it is 1."""
+    if is_constant(amount, 0) or a is b:
+        return a
+    if is_constant(amount, 1):
+        return b
+    if is_texture(a) or is_texture(b) or is_texture(amount):
+        return textures.Mix(a=_plain(a), b=_plain(b), amount=held(number(amount)))
+    return total(product(a, 1.0 - number(amount)), product(b, number(amount)))
+
+
+def quotient(a: Value, b: Value) -> Value:
+    """a / b, 0 where b is 0."""
+    if is_constant(b, 1):
+        return a
+    if is_texture(a) or is_texture(b):
+        return textures.Divide(a=_plain(a), b=_plain(b))
+    x, y = color(a), color(b)
+    return tuple(p / q if q else 0.0 for p, q in zip(x, y))  # type: ignore[return-value]
+
+
+def _plain(value: Value) -> Any:
+    """As a key of a texture takes it: not below 0."""
+    return held(value, 0.0, 1e18)

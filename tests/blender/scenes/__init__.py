@@ -1,0 +1,1 @@
+"""Scenes of the truth tests, a file for each subject."""

@@ -1,0 +1,158 @@
+"""Shaders, between a floor and a world, below an area light."""
+
+from scene import floor, light, link, material, node, primitive, scene, shader_of, world
+
+
+def ball(made, kind: str = "uv_sphere"):
+    """A ball of a material on the floor."""
+    floor()
+    world((0.3, 0.35, 0.4))
+    light("AREA", 150, at=(2, -2, 4), towards=(0, 0, 0.5), shape="SQUARE", size=2)
+    if kind == "uv_sphere":
+        return primitive(kind, made, at=(0, 0, 1), smooth=True, segments=96, ring_count=48)
+    return primitive(kind, made, at=(0, 0, 1))
+
+
+# Until 3.6 the Principled BSDF is another model: Disney's diffuse lobe, and facets that do not share light with what is below.
+@scene(mean=0.02, block=0.1)
+def principled_matt() -> None:
+    ball(material(node="ShaderNodeBsdfPrincipled", Base_Color=(0.7, 0.3, 0.1), Roughness=0.6))
+
+
+@scene(mean=0.02, block=0.08)
+def principled_metal() -> None:
+    ball(material(node="ShaderNodeBsdfPrincipled", Base_Color=(0.9, 0.6, 0.2), Metallic=1.0, Roughness=0.25))
+
+
+@scene(mean=0.02, block=0.06)
+def principled_glass() -> None:
+    ball(material(node="ShaderNodeBsdfPrincipled", Base_Color=1.0, Transmission=1.0, Roughness=0.0, IOR=1.45))
+
+
+@scene(mean=0.02, block=0.1)
+def principled_coat() -> None:
+    ball(material(node="ShaderNodeBsdfPrincipled", Base_Color=(0.2, 0.05, 0.3), Clearcoat=1.0, Roughness=0.5))
+
+
+@scene()
+def principled_emission() -> None:
+    ball(material(node="ShaderNodeBsdfPrincipled", Base_Color=0.0, Specular=0.0, Emission=(1, 0.5, 0.2), Emission_Strength=2.0))
+
+
+@scene(mean=0.02, block=0.1)
+def principled_alpha() -> None:
+    ball(material(node="ShaderNodeBsdfPrincipled", Base_Color=(0.8, 0.2, 0.2), Roughness=1.0, Specular=0.0, Alpha=0.4))
+
+
+@scene()
+def glossy() -> None:
+    ball(material(node="ShaderNodeBsdfGlossy", Color=(0.9, 0.8, 0.6), Roughness=0.3))
+
+
+@scene()
+def mirror() -> None:
+    made = material(node="ShaderNodeBsdfGlossy", Color=(0.9, 0.8, 0.6), Roughness=0.0)
+    shader_of(made).distribution = "SHARP"
+    ball(made)
+
+
+@scene()
+def glass() -> None:
+    made = material(node="ShaderNodeBsdfGlass", Color=(0.9, 1.0, 0.95), Roughness=0.0, IOR=1.5)
+    shader_of(made).distribution = "SHARP"
+    ball(made)
+
+
+@scene()
+def rough_glass() -> None:
+    ball(material(node="ShaderNodeBsdfGlass", Color=1.0, Roughness=0.3, IOR=1.45))
+
+
+@scene()
+def translucent() -> None:
+    ball(material(node="ShaderNodeBsdfTranslucent", Color=(0.8, 0.7, 0.2)))
+
+
+@scene()
+def transparent() -> None:
+    ball(material(node="ShaderNodeBsdfTransparent", Color=0.5))
+
+
+@scene()
+def emission() -> None:
+    ball(material(node="ShaderNodeEmission", Color=(1, 0.6, 0.3), Strength=3.0))
+
+
+@scene()
+def mixed_shaders() -> None:
+    made = material(node="ShaderNodeMixShader", Fac=0.3)
+    mix = shader_of(made)
+    link(made, node(made, "ShaderNodeBsdfDiffuse", Color=(0.8, 0.1, 0.1)).outputs[0], mix.inputs[1])
+    link(made, node(made, "ShaderNodeBsdfGlossy", Color=0.9, Roughness=0.2).outputs[0], mix.inputs[2])
+    ball(made)
+
+
+@scene()
+def added_shaders() -> None:
+    made = material(node="ShaderNodeAddShader")
+    total = shader_of(made)
+    link(made, node(made, "ShaderNodeBsdfDiffuse", Color=(0.4, 0.1, 0.1)).outputs[0], total.inputs[0])
+    link(made, node(made, "ShaderNodeEmission", Color=(0.1, 0.2, 0.5)).outputs[0], total.inputs[1])
+    ball(made)
+
+
+@scene()
+def half_there() -> None:
+    # A lamp that is there by half, in front of a matt ball.
+    made = material(node="ShaderNodeMixShader", Fac=0.5)
+    mix = shader_of(made)
+    link(made, node(made, "ShaderNodeBsdfTransparent").outputs[0], mix.inputs[1])
+    link(made, node(made, "ShaderNodeEmission", Color=(1, 0.5, 0.2), Strength=2.0).outputs[0], mix.inputs[2])
+    ball(material(Color=0.5))
+    primitive("plane", made, at=(-0.8, -1.5, 0.8), turn=(90, 0, 0), size=1)
+
+
+@scene()
+def absorbing_volume() -> None:
+    ball(_volume("ShaderNodeVolumeAbsorption", Color=(0.8, 0.4, 0.2), Density=1.5), "cube")
+
+
+@scene()
+def scattering_volume() -> None:
+    ball(_volume("ShaderNodeVolumeScatter", Color=(0.8, 0.6, 0.9), Density=1.0, Anisotropy=0.3), "cube")
+
+
+@scene()
+def principled_volume() -> None:
+    ball(_volume("ShaderNodeVolumePrincipled", Color=(0.5, 0.6, 0.7), Density=0.8, Emission_Strength=0.2), "cube")
+
+
+def _volume(kind: str, **inputs):
+    made = material(node=None)
+    volume = node(made, kind, **inputs)
+    link(made, volume.outputs[0], made.node_tree.nodes["Material Output"].inputs["Volume"])
+    return made
+
+
+@scene()
+def in_a_group() -> None:
+    # The same as matt red, behind a reroute, a muted node and a group of nodes.
+    import bpy
+
+    group = bpy.data.node_groups.new("Paint", "ShaderNodeTree")
+    group.inputs.new("NodeSocketColor", "Tint")
+    group.outputs.new("NodeSocketShader", "Shader")
+    inside, outside = group.nodes.new("NodeGroupInput"), group.nodes.new("NodeGroupOutput")
+    diffuse = node(group, "ShaderNodeBsdfDiffuse")
+    link(group, inside.outputs["Tint"], diffuse.inputs["Color"])
+    link(group, diffuse.outputs[0], outside.inputs["Shader"])
+    made = material(node=None)
+    paint = made.node_tree.nodes.new("ShaderNodeGroup")
+    paint.node_tree = group
+    invert = node(made, "ShaderNodeInvert", Color=(0.8, 0.2, 0.1))
+    invert.mute = True
+    reroute = made.node_tree.nodes.new("NodeReroute")
+    link(made, invert.outputs[0], reroute.inputs[0])
+    link(made, reroute.outputs[0], paint.inputs["Tint"])
+    link(made, paint.outputs[0], made.node_tree.nodes["Material Output"].inputs["Surface"])
+    ball(made)
