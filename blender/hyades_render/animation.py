@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
+from collections.abc import Generator
 from pathlib import Path
 from typing import Any
 
@@ -27,7 +27,7 @@ def job_of(scene: Any, *, whole: bool, name: str) -> Exported:
     return last
 
 
-def steps(scene: Any, *, whole: bool, name: str) -> Iterator[Any]:
+def steps(scene: Any, *, whole: bool, name: str) -> Generator[Any, None, None]:
     """The same, frame by frame: yields texts that tell how far it is, and the Exported in the end."""
     frames = frames_of(scene) if whole else range(scene.frame_current, scene.frame_current + 1)
     if len(frames) == 0 or frames[0] < 0:
@@ -35,7 +35,7 @@ def steps(scene: Any, *, whole: bool, name: str) -> Iterator[Any]:
     return _steps(scene, frames, whole, name)
 
 
-def _steps(scene: Any, frames: range, whole: bool, name: str) -> Iterator[Any]:
+def _steps(scene: Any, frames: range, whole: bool, name: str) -> Generator[Any, None, None]:
     moments = Moments()
     before = scene.frame_current, scene.frame_subframe
     try:

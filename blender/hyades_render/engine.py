@@ -58,8 +58,7 @@ class HyadesRenderEngine(bpy.types.RenderEngine):
         return self._viewport
 
     def _fail(self, message: str) -> None:
-        if bpy.app.background:
-            print(f"Hyades: error: {message}", flush=True)
+        self.report({"ERROR"}, f"Hyades: {message}")
         self.error_set(message)
 
 

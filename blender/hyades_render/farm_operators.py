@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import shutil
 import tempfile
-from collections.abc import Iterator
+from collections.abc import Generator
 from pathlib import Path
 from typing import Any
 
@@ -35,17 +35,17 @@ class HYADES_OT_submit(_FarmOperator, bpy.types.Operator):
 
     @classmethod
     def poll(cls, context: Any) -> bool:
-        return not any(task.what.startswith("Submitting") for task in farm_state.tasks)
+        return farm_state.submission is None
 
     def execute(self, context: Any) -> set[str]:
         scene = context.scene
         try:
             farm = preferences.farm()
             program = preferences.find_program()
-            steps = animation.steps(scene, whole=self.whole, name=_name(scene))
+            steps = animation.steps(scene, whole=self.whole, name=scene_job.name_of(scene))
         except _WRONG as error:
             return self.refuse(error)
-        submission = _Submission(scene, farm, program, steps)
+        submission = farm_state.submission = _Submission(scene, farm, program, steps)
         if bpy.app.background:
             while submission.step() is not None:
                 pass
@@ -57,35 +57,42 @@ class HYADES_OT_submit(_FarmOperator, bpy.types.Operator):
 class _Submission:
     """The scene frame by frame, a step of a timer each, so that the window stays alive; then a task that uploads."""
 
-    def __init__(self, scene: Any, farm: hyades.Farm, program: str, steps: Iterator[Any]) -> None:
+    def __init__(self, scene: Any, farm: hyades.Farm, program: str, steps: Generator[Any, None, None]) -> None:
         self._scene = scene
         self._farm = farm
         self._program = program
         self._steps = steps
+        self.stopped = False
+        """Set to end it before the next frame."""
         self.submitted: Any = None
 
     def step(self) -> float | None:
         """Seconds until the next one; None: that was the last."""
         try:
+            if self.stopped:
+                self._steps.close()
+                return self._end("stopped exporting")
             news = next(self._steps)
         except _WRONG as error:
-            farm_state.tell(str(error), is_error=True)
-            return None
+            return self._end(str(error), is_error=True)
+        except Exception:
+            farm_state.submission = None
+            raise
         if isinstance(news, str):
             farm_state.tell(news)
-            return 0.0
+            return 0.01
         complaints.keep(self._scene, news.complaints)
         complaints.print_all(news.complaints)
-        settings = self._scene.hyades
-        options = {
-            "name": news.job.name,
-            "priority": settings.farm_priority,
-            "tags": [tag.strip() for tag in settings.farm_tags.split(",") if tag.strip()],
-        }
+        options = {"name": news.job.name, **scene_job.farm_options(self._scene.hyades)}
+        self._end("")
         farm_state.begin(Task(f"Submitting {news.job.name}", lambda task: self._submit(task, news.job, options)))
         if not bpy.app.background and farm_state.watch is None:
             farm_state.start_watch()
         return None
+
+    def _end(self, text: str, is_error: bool = False) -> None:
+        farm_state.submission = None
+        farm_state.tell(text, is_error)
 
     def _submit(self, task: Task, job: hyades.Job, options: dict[str, Any]) -> str:
         """By the task's thread."""
@@ -100,6 +107,18 @@ class _Submission:
         finally:
             shutil.rmtree(folder, ignore_errors=True)
         return f"submitted job {self.submitted.id}, {self.submitted.name}, {self.submitted.frames} frames"
+
+
+class HYADES_OT_stop_submission(_FarmOperator, bpy.types.Operator):
+    """Exports no further frame, and submits nothing"""
+
+    bl_idname = "hyades.stop_submission"
+    bl_label = "Stop"
+
+    def execute(self, context: Any) -> set[str]:
+        if farm_state.submission is not None:
+            farm_state.submission.stopped = True
+        return {"FINISHED"}
 
 
 class HYADES_OT_watch_farm(_FarmOperator, bpy.types.Operator):
@@ -215,16 +234,13 @@ class HYADES_OT_open_dashboard(_JobOperator, bpy.types.Operator):
 
 _CLASSES = (
     HYADES_OT_submit,
+    HYADES_OT_stop_submission,
     HYADES_OT_watch_farm,
     HYADES_OT_test_farm,
     HYADES_OT_fetch,
     HYADES_OT_cancel,
     HYADES_OT_open_dashboard,
 )
-
-
-def _name(scene: Any) -> str:
-    return scene_job.job_name(scene.hyades.farm_name or Path(bpy.data.filepath).stem or scene.name)
 
 
 def register() -> None:

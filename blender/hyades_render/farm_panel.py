@@ -53,7 +53,10 @@ class HYADES_PT_farm(bpy.types.Panel):
         for task in farm_state.tasks:
             layout.label(text=f"{task.what}: {task.words}" if task.words else task.what, icon="SORTTIME")
         if farm_state.message:
-            layout.label(text=farm_state.message, icon="ERROR" if farm_state.message_is_error else "INFO")
+            row = layout.row()
+            row.label(text=farm_state.message, icon="ERROR" if farm_state.message_is_error else "INFO")
+            if farm_state.submission is not None:
+                row.operator("hyades.stop_submission", text="", icon="X")
         watch = farm_state.watch
         layout.operator(
             "hyades.watch_farm", text="Hide Jobs" if watch else "Show Jobs", icon="HIDE_ON" if watch else "HIDE_OFF"

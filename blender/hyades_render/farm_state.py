@@ -14,6 +14,8 @@ _EVERY = 0.5  # seconds
 
 watch: FarmWatch | None = None
 tasks: list[Task] = []
+submission: Any = None
+"""What is exported at the moment, frame by frame."""
 message = ""
 """What the last task came to."""
 message_is_error = False
@@ -52,6 +54,7 @@ def tell(text: str, is_error: bool = False) -> None:
     """What the panel says, and without a window standard output."""
     global message, message_is_error
     message, message_is_error = text, is_error
+    _redraw()
     if bpy.app.background and text:
         print(f"Hyades: {'error: ' if is_error else ''}{text}", flush=True)
 

@@ -10,11 +10,12 @@ from typing import Any
 
 import bpy
 import hyades
+import numpy
 from hyades import read_exr
 
 from . import complaints, passes, preferences, scene_job
-from .render_process import RenderProcess, refusal
-from .viewer import Viewer
+from .render_process import refusal
+from .runs import FarmRun, LocalRun
 
 _LOOKS_EVERY = 0.05  # seconds: how soon Esc is noticed
 _SHOWS_EVERY = 0.3  # seconds between two pictures; more where showing one takes long
@@ -32,6 +33,8 @@ class FinalRender:
         self._passes = passes.asked_for(self._scene, self._layer)
         self._transparent = self._scene.render.film_transparent
         self._result: Any = None
+        self._told: Any = {}
+        self._finished = False
 
     def run(self) -> None:
         """Renders until all is done, or Esc. HyadesError, OSError, ValueError where that fails."""
@@ -46,16 +49,12 @@ class FinalRender:
             if self._engine.test_break():
                 return
             self._begin(exported.job)
-            with Viewer() as viewer:
-                process = RenderProcess(
-                    program, path, folder, ["--display", viewer.address, *self._options()], document.text.source_of
-                )
-                self._follow(process, viewer, exported.job)
+            self._follow(self._run(program, path, document), exported.job)
             if not self._engine.test_break():
                 self._finish(folder / "blender.exr")
         finally:
             if self._result is not None:
-                self._engine.end_result(self._result, cancel=self._engine.test_break())
+                self._engine.end_result(self._result, cancel=not self._finished)
             if not preferences.keeps_jobs():
                 shutil.rmtree(folder, ignore_errors=True)
 
@@ -87,29 +86,38 @@ class FinalRender:
             self._engine.add_pass(one.name, len(one.channels), one.channels, layer=self._layer.name)
         self._result = self._engine.begin_result(0, 0, width, height, layer=self._layer.name)
 
-    def _follow(self, process: RenderProcess, viewer: Viewer, job: hyades.Job) -> None:
-        """Shows how the process gets on, until it ends or Esc is pressed."""
-        shown, next_time = 0, 0.0
+    def _run(self, program: str, path: Path, document: Any) -> LocalRun | FarmRun:
+        """Where the scene says that it is rendered."""
+        settings = self._scene.hyades
+        if settings.render_on == "farm" and not self._engine.is_preview:
+            name = scene_job.name_of(self._scene)
+            frame = max(self._scene.frame_current, 0)
+            return FarmRun(preferences.farm(), program, path, frame, name=name, **scene_job.farm_options(settings))
+        return LocalRun(program, path, self._options(), document.text.source_of)
+
+    def _follow(self, run: LocalRun | FarmRun, job: hyades.Job) -> None:
+        """Shows how it gets on, until it ends or Esc is pressed."""
+        next_time = 0.0
         try:
-            while process.running():
+            while run.running():
                 if self._engine.test_break():
                     return
-                for event in process.events():
-                    if event["event"] == "progress":
-                        self._progress(event)
+                self._progress(run.progress())
                 began = time.monotonic()
-                if not bpy.app.background and began >= next_time and viewer.changes() != shown:
-                    shown = viewer.changes()
-                    self._show(viewer)
+                if not bpy.app.background and began >= next_time and (picture := run.picture()) is not None:
+                    self._show(picture)
                     next_time = time.monotonic() + max(_SHOWS_EVERY, 4 * (time.monotonic() - began))
                 time.sleep(_LOOKS_EVERY)
-            error = process.ending_error()
+            error = run.error()
             if error is not None:
                 raise hyades.HyadesError(refusal(error, lambda thing: scene_job.name_in_blender(job, thing)))
         finally:
-            process.stop()
+            run.close()
 
     def _progress(self, event: dict[str, Any]) -> None:
+        if event == self._told:
+            return
+        self._told = event
         share = event["samples_done"] / max(event["samples"], 1)
         words = [f"{share:.0%}"]
         if event["seconds_left"] >= 0:
@@ -120,10 +128,7 @@ class FinalRender:
         self._engine.update_progress(share)
         self._tell(", ".join(words))
 
-    def _show(self, viewer: Viewer) -> None:
-        picture = viewer.pixels()
-        if picture is None:
-            return
+    def _show(self, picture: numpy.ndarray) -> None:
         if not self._transparent:
             picture[:, :, 3] = 1
         self._fill("Combined", passes.as_pixels(picture, 4))
@@ -138,6 +143,7 @@ class FinalRender:
                 self._fill(one.name, pixels)
         for field, text in passes.cryptomatte_fields(layers, self._layer.name, self._passes).items():
             self._engine.get_result().stamp_data_add_field(field, text)
+        self._finished = True
         self._engine.update_progress(1.0)
         self._tell("Done")
 

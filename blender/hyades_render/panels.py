@@ -45,6 +45,7 @@ class HYADES_PT_sampling(_Panel, bpy.types.Panel):
 
     def draw(self, context: bpy.types.Context) -> None:
         settings, layout = context.scene.hyades, self.begin()
+        layout.prop(settings, "render_on")
         column = layout.column(align=True)
         column.prop(settings, "samples", text="Max Samples" if settings.noise > 0 else "Samples")
         column.prop(settings, "noise")

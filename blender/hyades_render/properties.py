@@ -19,9 +19,16 @@ DENOISERS = (
 )
 
 
+PLACES = (
+    ("here", "This Machine", "By the program hyades on this machine"),
+    ("farm", "Farm", "By the farm that the preferences name"),
+)
+
+
 class HyadesSceneSettings(bpy.types.PropertyGroup):
     """How a scene is rendered."""
 
+    render_on: EnumProperty(name="Render On", description="Where F12 is rendered", items=PLACES, default="here")
     integrator: EnumProperty(name="Integrator", description="How light is found", items=INTEGRATORS, default="path")
     samples: IntProperty(
         name="Samples",

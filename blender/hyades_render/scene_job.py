@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import re
+from pathlib import Path
 from typing import Any
 
+import bpy
 import hyades
 from hyades import integrators, outputs
 
@@ -41,6 +43,17 @@ def apply_settings(job: hyades.Job, settings: Any) -> None:
         job.integrator = integrators.Path(clamp=settings.clamp, **depths)
     if settings.denoise != "none":
         job.denoise = True if settings.denoise == "true" else settings.denoise
+
+
+def farm_options(settings: Any) -> dict[str, Any]:
+    """What `scene.hyades` says to Farm.submit()."""
+    tags = [tag.strip() for tag in settings.farm_tags.split(",") if tag.strip()]
+    return {"priority": settings.farm_priority, "tags": tags}
+
+
+def name_of(scene: Any) -> str:
+    """What the scene's jobs are called on the farm."""
+    return job_name(scene.hyades.farm_name or Path(bpy.data.filepath).stem or scene.name)
 
 
 def job_name(text: str, default: str = "blender") -> str:
