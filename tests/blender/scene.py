@@ -25,7 +25,7 @@ class Scene:
         return self.build.__name__
 
 
-def scene(*, mean: float = 0.02, block: float = 0.05, samples: int = 256, complaints: tuple[str, ...] = ()):
+def scene(*, mean: float = 0.02, block: float = 0.05, samples: int = 192, complaints: tuple[str, ...] = ()):
     """Marks a function that builds a scene. `complaints`: parts of those that the exporter has to make."""
 
     def add(build: Callable[[], None]) -> Callable[[], None]:

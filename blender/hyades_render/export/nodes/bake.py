@@ -18,7 +18,7 @@ DEFAULT_SIDE = 1024
 _EDGE = 1.5  # texels between a triangle and the end of its square
 _LEAST = 4  # texels along a square
 _LARGEST = 4096
-_AT_ONCE = 1 << 18
+_AT_ONCE = 1 << 16
 
 
 def texture_of(translator: Translator, end: Input, reason: Inexpressible) -> values.Value:
@@ -110,21 +110,20 @@ class Atlas:
         return result[::-1]
 
     def _fill(self, translator: Translator, end: Input, chosen: Array, size: int, result: Array) -> None:
-        y, x = numpy.mgrid[0:size, 0:size]
+        y, x = (axis.reshape(-1) for axis in numpy.mgrid[0:size, 0:size])
         span = size - 2 * _EDGE
-        # The other half of the square, and its edges, go on beyond the triangle, but not far.
-        b = numpy.clip((x.reshape(-1) + 0.5 - _EDGE) / span, -1, 1.5)
-        c = numpy.clip((y.reshape(-1) + 0.5 - _EDGE) / span, -1, 1.5)
-        over = numpy.maximum(b + c - 1 - 2 / span, 0) / 2
-        b, c = b - over, c - over
+        b, c = (x + 0.5 - _EDGE) / span, (y + 0.5 - _EDGE) / span
+        # A texel beyond each edge, from which pictures are interpolated; the rest is nobody's.
+        needed = (b + c <= 1 + 2.5 / span) & (b >= -1.5 / span) & (c >= -1.5 / span)
+        x, y, b, c = x[needed], y[needed], b[needed], c[needed]
         weights = numpy.stack([1 - b - c, b, c], axis=1)
-        triangles = numpy.repeat(chosen, size * size)
+        triangles = numpy.repeat(chosen, len(x))
         points = PartPoints(self.part, triangles, numpy.tile(weights, (len(chosen), 1)))
         value = Evaluator(translator, points).input(end)
         value = value[..., None] if end.socket.type == "VALUE" else value
         value = numpy.broadcast_to(value, (len(triangles), 3))
-        px = (self.corner[chosen, 0][:, None] + x.reshape(-1)).reshape(-1)
-        py = (self.corner[chosen, 1][:, None] + y.reshape(-1)).reshape(-1)
+        px = (self.corner[chosen, 0][:, None] + x).reshape(-1)
+        py = (self.corner[chosen, 1][:, None] + y).reshape(-1)
         result[py, px] = numpy.clip(numpy.nan_to_num(value), 0, 1e6)
 
 

@@ -49,44 +49,59 @@ def unit(*values: Array) -> Array:
     return hashed(*bits).astype("float64") / 0xFFFFFFFF
 
 
-def _gradient(hash: Array, offsets: list[Array]) -> Array:
-    count = len(offsets)
+def _table(count: int) -> Array:
+    """The gradients (2^k, count) of as many dimensions, by the last bits of a hash."""
     if count == 1:
-        h = hash & 15
-        return numpy.where(h & 8, -1.0, 1.0) * (1 + (h & 7)) * offsets[0]
-    x, y = offsets[0], offsets[1]
-    if count == 2:
-        h = hash & 7
-        u, v = numpy.where(h < 4, x, y), 2 * numpy.where(h < 4, y, x)
-        return numpy.where(h & 1, -u, u) + numpy.where(h & 2, -v, v)
-    z = offsets[2]
-    if count == 3:
-        h = hash & 15
-        u = numpy.where(h < 8, x, y)
-        v = numpy.where(h < 4, y, numpy.where((h == 12) | (h == 14), x, z))
-        return numpy.where(h & 1, -u, u) + numpy.where(h & 2, -v, v)
-    h = hash & 31
-    u, v, s = numpy.where(h < 24, x, y), numpy.where(h < 16, y, z), numpy.where(h < 8, z, offsets[3])
-    return numpy.where(h & 1, -u, u) + numpy.where(h & 2, -v, v) + numpy.where(h & 4, -s, s)
+        return numpy.array([[(-1 if h & 8 else 1) * (1 + (h & 7))] for h in range(16)], "float32")
+    bits, rows = {2: 8, 3: 16, 4: 32}[count], []
+    for h in range(bits):
+        if count == 2:
+            parts = [(0, 1), (1, 2)] if h < 4 else [(1, 1), (0, 2)]
+        elif count == 3:
+            parts = [(0 if h < 8 else 1, 1), (1 if h < 4 else 0 if h in (12, 14) else 2, 1)]
+        else:
+            parts = [(0 if h < 24 else 1, 1), (1 if h < 16 else 2, 1), (2 if h < 8 else 3, 1)]
+        row = [0] * count
+        for bit, (axis, length) in enumerate(parts):
+            row[axis] += -length if h >> bit & 1 else length
+        rows.append(row)
+    return numpy.array(rows, "float32")
+
+
+_GRADIENTS = {count: _table(count).T.copy() for count in (1, 2, 3, 4)}
+
+
+def _gradient(hash: Array, offsets: list[Array]) -> Array:
+    table = _GRADIENTS[len(offsets)]
+    which = hash & numpy.uint32(table.shape[1] - 1)
+    result = table[0][which] * offsets[0]
+    for axis in range(1, len(offsets)):
+        result += table[axis][which] * offsets[axis]
+    return result
 
 
 def signed_noise(place: Array) -> Array:
     """Noise -1..1 at places (n, 1 to 4)."""
     count = place.shape[1]
-    cell = numpy.floor(place)
-    share = place - cell
-    whole = cell.astype("int64").astype("uint32")
-    fade = share**3 * (share * (share * 6 - 15) + 10)
-    result = numpy.zeros(len(place))
+    low, shares, fades = [], [], []
     with numpy.errstate(over="ignore"):
+        for axis in range(count):
+            cell = numpy.floor(place[:, axis])
+            share = (place[:, axis] - cell).astype("float32")
+            whole = cell.astype("int64").astype("uint32")
+            fade = share * share * share * (share * (share * 6 - 15) + 10)
+            low.append((whole, whole + numpy.uint32(1)))
+            shares.append((share, share - 1))
+            fades.append((1 - fade, fade))
+        result = numpy.zeros(len(place), "float32")
         for corner in range(1 << count):
             at = [(corner >> axis) & 1 for axis in range(count)]
-            weight = numpy.ones(len(place))
-            for axis in range(count):
-                weight = weight * (fade[:, axis] if at[axis] else 1 - fade[:, axis])
-            keys = [whole[:, axis] + numpy.uint32(at[axis]) for axis in range(count)]
-            result += weight * _gradient(hashed(*keys), [share[:, axis] - at[axis] for axis in range(count)])
-    return result * _SCALES[count]
+            weight = fades[0][at[0]]
+            for axis in range(1, count):
+                weight = weight * fades[axis][at[axis]]
+            keys = [low[axis][at[axis]] for axis in range(count)]
+            result += weight * _gradient(hashed(*keys), [shares[axis][at[axis]] for axis in range(count)])
+    return result.astype("float64") * _SCALES[count]
 
 
 def fractal(place: Array, detail: Array, roughness: Array) -> Array:
