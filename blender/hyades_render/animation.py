@@ -11,31 +11,67 @@ import bpy
 import hyades
 from hyades import outputs
 
-from . import capture, passes, scene_job
-from .export import Complaint, Exported
-from .moving import Moments, frames_of
+from . import capture, joined_frames, passes, scene_job
+from .export import Complaint, Exported, export_job
+from .moving import Moments
 
 # Without a configuration of OpenColorIO: curves of Hyades by the names of Blender's views.
 _TONE_MAPS = {"Standard": "srgb", "Filmic": "filmic", "AgX": "agx", "Raw": "linear"}
+_LOOKS = 5  # frames that tell whether anything moves
 _EXR = ("OPEN_EXR", "OPEN_EXR_MULTILAYER")
 
 
-def job_of(scene: Any, *, whole: bool, name: str) -> Exported:
-    """The job of a scene as a final render sees it; `whole`: of all its frames. For the main thread, while
-    nothing is rendered. ValueError where it cannot be said."""
-    *_, last = steps(scene, whole=whole, name=name)
+def job_of(scene: Any, *, frames: range | None, name: str) -> Exported:
+    """The job of a scene as a final render sees it: of `frames`, or as one picture of the current one. For the
+    main thread, while nothing is rendered. ValueError where it cannot be said."""
+    *_, last = steps(scene, frames=frames, name=name)
     return last
 
 
-def steps(scene: Any, *, whole: bool, name: str) -> Generator[Any, None, None]:
+def steps(scene: Any, *, frames: range | None, name: str) -> Generator[Any, None, None]:
     """The same, frame by frame: yields texts that tell how far it is, and the Exported in the end."""
-    frames = frames_of(scene) if whole else range(scene.frame_current, scene.frame_current + 1)
-    if len(frames) == 0 or frames[0] < 0:
-        raise ValueError(f"frames {scene.frame_start} to {scene.frame_end}: expected at least one, from 0 on")
-    return _steps(scene, frames, whole, name)
+    chosen = range(scene.frame_current, scene.frame_current + 1) if frames is None else frames
+    if len(chosen) == 0 or chosen[0] < 0:
+        raise ValueError(f"frames {text_of(chosen)}: expected at least one, from 0 on")
+    return _steps(scene, chosen, frames is not None, name)
 
 
-def _steps(scene: Any, frames: range, whole: bool, name: str) -> Generator[Any, None, None]:
+def all_frames(scene: Any) -> range:
+    """The frames that Blender renders of an animation."""
+    return range(scene.frame_start, scene.frame_end + 1, scene.frame_step)
+
+
+def moving_frames(scene: Any) -> range | None:
+    """All frames of a scene, None where the first, the last and some between are alike: it is a picture."""
+    frames = all_frames(scene)
+    looks = sorted({frames[len(frames) * part // (_LOOKS - 1) - (part == _LOOKS - 1)] for part in range(_LOOKS)})
+    before = scene.frame_current, scene.frame_subframe
+    first = None
+    try:
+        for frame in looks:
+            scene.frame_set(frame)
+            job = capture.look_at_final(scene, _job_now)
+            job.frames = None
+            if first is not None and not joined_frames.alike(first, job):
+                return frames
+            first = job
+    finally:
+        scene.frame_set(before[0], subframe=before[1])
+    return None
+
+
+def text_of(frames: range) -> str:
+    """As the job says frames: 1-10x2."""
+    if len(frames) == 1:
+        return str(frames[0])
+    return f"{frames.start}-{frames.stop - 1}" + (f"x{frames.step}" if frames.step > 1 else "")
+
+
+def _job_now(_engine: Any, depsgraph: Any) -> hyades.Job:
+    return export_job(depsgraph, settings=depsgraph.scene.hyades).job
+
+
+def _steps(scene: Any, frames: range, numbered: bool, name: str) -> Generator[Any, None, None]:
     moments = Moments()
     before = scene.frame_current, scene.frame_subframe
     try:
@@ -45,12 +81,11 @@ def _steps(scene: Any, frames: range, whole: bool, name: str) -> Generator[Any, 
             capture.look_at_final(scene, moments.export)
     finally:
         scene.frame_set(before[0], subframe=before[1])
-    text = f"{frames[0]}-{frames[-1]}" + (f"x{frames.step}" if frames.step > 1 else "")
-    exported = moments.job(text if len(frames) > 1 else frames[0])
+    exported = moments.job(text_of(frames) if len(frames) > 1 else frames[0])
     job = exported.job
     job.name = scene_job.job_name(name)
     scene_job.apply_settings(job, scene.hyades)
-    job.outputs, more = _outputs(scene, job, len(frames) > 1)
+    job.outputs, more = _outputs(scene, job, numbered)
     yield Exported(job, [*exported.complaints, *more])
 
 
@@ -60,11 +95,11 @@ def output_folder(scene: Any) -> Path:
     return Path(path if path.endswith(("/", "\\")) else Path(path).parent).absolute()
 
 
-def _outputs(scene: Any, job: hyades.Job, several: bool) -> tuple[list[outputs.Output], list[Complaint]]:
+def _outputs(scene: Any, job: hyades.Job, numbered: bool) -> tuple[list[outputs.Output], list[Complaint]]:
     """What the scene's output properties ask for, below the folder that they name."""
     image, found = scene.render.image_settings, []
     kind = image.file_format
-    stem = _stem(scene, job.name, several and kind != "FFMPEG")
+    stem = _stem(scene, job.name, numbered and kind != "FFMPEG")
     shown: dict[str, Any] = {"exposure": scene.view_settings.exposure}
     if job.color is None:
         shown["tone_map"] = _TONE_MAPS.get(scene.view_settings.view_transform, "srgb")
@@ -79,7 +114,7 @@ def _outputs(scene: Any, job: hyades.Job, several: bool) -> tuple[list[outputs.O
         made = outputs.Jpg(file=stem + ".jpg", quality=max(image.quality, 1), **shown)
     elif kind == "TIFF":
         made = outputs.Tiff(file=stem + ".tif", transparent=see_through, bits=_bits(image), **shown)
-    elif kind == "FFMPEG" and several:
+    elif kind == "FFMPEG" and numbered:
         made = outputs.Video(file=stem + ".mp4", **shown)
     else:
         if kind not in ("PNG", "FFMPEG"):
@@ -92,12 +127,12 @@ def _bits(image: Any) -> int:
     return 16 if image.color_depth == "16" else 8
 
 
-def _stem(scene: Any, name: str, several: bool) -> str:
+def _stem(scene: Any, name: str, numbered: bool) -> str:
     """The name of files without its end: that of the output path, else the job's; `####` stands for the frame."""
     path = scene.render.filepath
     base = "" if path.endswith(("/", "\\")) else Path(bpy.path.abspath(path)).name
     base = re.sub(r"\.(png|jpe?g|tiff?|exr|mp4|mov|mkv|avi)$", "", base, flags=re.IGNORECASE)
-    if not several:
+    if not numbered:
         return base.replace("#", "") or name
     if "#" in base:
         return base

@@ -29,14 +29,15 @@ class HYADES_OT_export_job(bpy.types.Operator, ExportHelper):
     )
 
     def execute(self, context: bpy.types.Context) -> set[str]:
-        path = Path(bpy.path.abspath(self.filepath))
+        scene, path = context.scene, Path(bpy.path.abspath(self.filepath))
+        frames = animation.all_frames(scene) if self.frames == "all" else None
         try:
-            exported = animation.job_of(context.scene, whole=self.frames == "all", name=path.stem)
+            exported = animation.job_of(scene, frames=frames, name=path.stem)
             exported.job.write(path)
         except (hyades.HyadesError, OSError, ValueError) as error:
             self.report({"ERROR"}, f"Hyades: {error}")
             return {"CANCELLED"}
-        complaints.keep(context.scene, exported.complaints)
+        complaints.keep(scene, exported.complaints)
         complaints.tell(self, exported.complaints)
         self.report({"INFO"}, f"Hyades: wrote {path}")
         return {"FINISHED"}

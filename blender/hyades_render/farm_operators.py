@@ -42,7 +42,8 @@ class HYADES_OT_submit(_FarmOperator, bpy.types.Operator):
         try:
             farm = preferences.farm()
             program = preferences.find_program()
-            steps = animation.steps(scene, whole=self.whole, name=scene_job.name_of(scene))
+            frames = animation.all_frames(scene) if self.whole else None
+            steps = animation.steps(scene, frames=frames, name=scene_job.name_of(scene))
         except _WRONG as error:
             return self.refuse(error)
         submission = farm_state.submission = _Submission(scene, farm, program, steps)

@@ -24,6 +24,11 @@ def share(before: hyades.Job, now: hyades.Job) -> None:
     _share(before, now, {})
 
 
+def alike(one: hyades.Job, other: hyades.Job) -> bool:
+    """Whether two jobs say the same thing."""
+    return _same(one, other)
+
+
 def join(moments: Sequence[float], jobs: Sequence[hyades.Job]) -> tuple[hyades.Job, list[Complaint]]:
     """One job that is each of `jobs` at its moment [frames, rising], and what of them it cannot say. Between
     moments values move on straight lines. The range of frames is that of the first job."""

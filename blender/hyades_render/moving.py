@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from typing import Any
 
 import hyades
@@ -74,11 +73,6 @@ def shutter(scene: Any) -> tuple[float, float]:
         getattr(scene, "cycles", None), "motion_blur_position", "CENTER"
     )
     return _POSITIONS[position], min(render.motion_blur_shutter, 1.0)
-
-
-def frames_of(scene: Any) -> Sequence[int]:
-    """The frames that Blender renders of an animation."""
-    return range(scene.frame_start, scene.frame_end + 1, scene.frame_step)
 
 
 def _set_time(engine: Any, time: float) -> None:
