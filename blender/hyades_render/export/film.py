@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 
 import hyades
+import numpy
 from hyades import integrators
 
 from .context import Context
@@ -54,8 +55,8 @@ def _filter(context: Context) -> hyades.Filter:
 
 
 def _crop(render, size: list[int]) -> list[int]:
-    """The border in pixels, with row 0 at the top."""
+    """The border in pixels, with row 0 at the top; cut to whole ones as Blender does, in single precision."""
     width, height = size
-    x0, x1 = round(render.border_min_x * width), round(render.border_max_x * width)
-    y0, y1 = round((1 - render.border_max_y) * height), round((1 - render.border_min_y) * height)
-    return [x0, y0, max(x1, x0 + 1), max(y1, y0 + 1)]
+    x0, x1 = (int(numpy.float32(edge) * numpy.float32(width)) for edge in (render.border_min_x, render.border_max_x))
+    low, high = (int(numpy.float32(edge) * numpy.float32(height)) for edge in (render.border_min_y, render.border_max_y))
+    return [x0, height - high, max(x1, x0 + 1), max(height - low, height - high + 1)]
