@@ -2,13 +2,8 @@
 
 import math
 
-from scene import camera, floor, light, material, primitive, scene, world
-
-
-def room() -> None:
-    """A floor with a matt ball."""
-    floor()
-    primitive("uv_sphere", material("Ball", Color=(0.8, 0.4, 0.2)), at=(0, 0, 1), smooth=True, segments=64, ring_count=32)
+from lights_room import room
+from scene import camera, light, scene, world
 
 
 @scene()

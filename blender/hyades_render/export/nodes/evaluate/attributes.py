@@ -59,3 +59,12 @@ def object_info(at: Evaluator, output: Output) -> Array:
     if kind == "Material Index":
         return numpy.asarray(float(at.translator.material.pass_index))
     raise Inexpressible(output, f"'{output.socket.name}' is not supported")
+
+
+@computes("LIGHT_PATH")
+def light_path(at: Evaluator, output: Output) -> Array:
+    """One answer for all rays: what is met is the same however it is met."""
+    is_camera = output.socket.identifier == "Is Camera Ray" and not at.translator.where.startswith("world")
+    what = "a camera's ray" if not at.translator.where.startswith("world") else "light that falls on the scene"
+    at.translator.complain(output.node, f"the answer is the same for all rays, that for {what}")
+    return numpy.asarray(1.0 if is_camera or output.socket.identifier == "Ray Length" else 0.0)

@@ -1,0 +1,128 @@
+"""Meshes after their modifiers, their normals, materials per face, and copies."""
+
+import math
+
+import bpy
+from scene import add, camera, floor, light, link, material, node, primitive, scene, world
+
+
+def lit() -> None:
+    """Ground and light."""
+    floor()
+    world((0.3, 0.35, 0.4))
+    light("SUN", 2, at=(3, -3, 4), angle=math.radians(5))
+
+
+@scene(samples=128)
+def subdivided_monkey() -> None:
+    lit()
+    monkey = primitive("monkey", material(Color=(0.7, 0.5, 0.2)), at=(0, 0, 1), smooth=True, size=2)
+    monkey.modifiers.new("Subdivision", "SUBSURF").render_levels = 2
+
+
+@scene(samples=128)
+def modified() -> None:
+    lit()
+    body = primitive("cube", material(Color=(0.2, 0.6, 0.5)), at=(-1.2, 0, 0.6), size=1)
+    body.modifiers.new("Bevel", "BEVEL").width = 0.15
+    array = body.modifiers.new("Array", "ARRAY")
+    array.count = 3
+    array.relative_offset_displace = (1.3, 0.2, 0)
+    body.modifiers.new("Hidden", "DECIMATE").show_render = False
+
+
+@scene(samples=128)
+def automatic_smooth() -> None:
+    # Edges of more than 30 degrees stay sharp, of less are smooth.
+    lit()
+    body = primitive("cylinder", material(Color=0.7), at=(0, 0, 1), turn=(30, 0, 20), smooth=True, vertices=24)
+    body.data.use_auto_smooth, body.data.auto_smooth_angle = True, math.radians(30)
+
+
+@scene(samples=128)
+def flat_and_smooth() -> None:
+    lit()
+    body = primitive("uv_sphere", material(Color=0.7), at=(0, 0, 1), segments=12, ring_count=8)
+    body.data.polygons.foreach_set("use_smooth", [i % 3 > 0 for i in range(len(body.data.polygons))])
+
+
+@scene(samples=128)
+def materials_per_face() -> None:
+    lit()
+    body = primitive("ico_sphere", material("Red", Color=(0.8, 0.1, 0.1)), at=(0, 0, 1), subdivisions=2)
+    body.data.materials.append(material("Blue", Color=(0.1, 0.2, 0.8)))
+    body.data.materials.append(material("Lamp", node="ShaderNodeEmission", Strength=2.0))
+    body.data.polygons.foreach_set("material_index", [i % 3 for i in range(len(body.data.polygons))])
+
+
+@scene(samples=128)
+def mirrored_and_stretched() -> None:
+    lit()
+    paint = material(Color=(0.6, 0.4, 0.7))
+    primitive("monkey", paint, at=(-1.2, 0, 1), scale=(-1, 1, 1), smooth=True)
+    primitive("monkey", paint, at=(1.2, 0, 1), turn=(10, 20, 30), scale=(0.7, 1.3, -0.9), smooth=True)
+
+
+@scene(samples=128)
+def instanced_collection() -> None:
+    lit()
+    paint = material(Color=(0.3, 0.6, 0.3))
+    collection = bpy.data.collections.new("Pair")
+    for x in (-0.4, 0.4):
+        body = primitive("ico_sphere", paint, at=(x, 0, 0.4), radius=0.35, subdivisions=3, smooth=True)
+        for parent in body.users_collection:
+            parent.objects.unlink(body)
+        collection.objects.link(body)
+    for i in range(5):
+        empty = add(None, f"Place{i}", at=(1.8 * i - 3.6, i % 2, 0), turn=(0, 0, 40 * i), scale=(1, 1, 0.7 + 0.2 * i))
+        empty.instance_type, empty.instance_collection = "COLLECTION", collection
+
+
+@scene(samples=128)
+def particles() -> None:
+    lit()
+    leaf = primitive("cone", material("Leaf", Color=(0.3, 0.6, 0.2)), at=(0, 0, -20), radius1=0.15, depth=0.4)
+    ground = primitive("grid", material("Ground", Color=0.4), size=5)
+    ground.location.z = 0.05
+    system = ground.modifiers.new("Leaves", "PARTICLE_SYSTEM").particle_system.settings
+    system.type, system.count, system.render_type = "HAIR", 300, "OBJECT"
+    system.instance_object, system.particle_size, system.use_advanced_hair = leaf, 1.0, True
+
+
+@scene(samples=128)
+def on_vertices() -> None:
+    lit()
+    small = primitive("uv_sphere", material("Dot", Color=(0.8, 0.5, 0.1)), radius=0.2, segments=16, ring_count=8, smooth=True)
+    frame = primitive("ico_sphere", at=(0, 0, 1.2), radius=1.0, subdivisions=2)
+    small.parent, frame.instance_type = frame, "VERTS"
+
+
+@scene(samples=128)
+def hidden() -> None:
+    # Neither what is not rendered nor what no camera sees is there; the shadow of the latter is.
+    lit()
+    primitive("cube", material(Color=0.5), at=(-1.5, 0, 1)).hide_render = True
+    primitive("cube", material(Color=0.5), at=(1.5, 0, 1)).visible_camera = False
+
+
+@scene(samples=128)
+def curve_and_text() -> None:
+    lit()
+    paint = material(Color=(0.7, 0.3, 0.2))
+    bpy.ops.curve.primitive_bezier_circle_add(radius=1.2, location=(0, 0, 1), rotation=(1.2, 0, 0.3))
+    bpy.context.object.data.bevel_depth = 0.2
+    bpy.context.object.data.materials.append(paint)
+    text = bpy.data.curves.new("Text", "FONT")
+    text.body, text.extrude, text.size = "Hy", 0.1, 1.2
+    text.materials.append(paint)
+    add(text, at=(-0.8, -0.5, 0.6), turn=(90, 0, 0))
+
+
+@scene(samples=64)
+def color_by_object() -> None:
+    # One material, whose colour is that of each object.
+    made = material(node="ShaderNodeEmission")
+    link(made, node(made, "ShaderNodeObjectInfo").outputs["Color"], made.node_tree.nodes["Emission"].inputs["Color"])
+    for x, color in ((-1.2, (0.8, 0.1, 0.1, 1)), (1.2, (0.1, 0.3, 0.8, 1))):
+        primitive("cube", made, at=(x, 0, 0.5), size=1).color = color
+    camera((0, -6, 2.5), (0, 0, 0.5))

@@ -1,0 +1,249 @@
+"""Textures and the nodes that change them, on a board that shines by what they say."""
+
+import math
+
+import bpy
+import numpy
+from scene import camera, light, link, material, node, primitive, said, scene, shader_of
+
+
+def board(kind: str, output: str | int = 0, coordinates: str | None = "UV", scale=(1.0, 1.0, 1.0), properties=None, **inputs):
+    """A texture on an upright board. Returns its material and node."""
+    made = material(node="ShaderNodeEmission")
+    texture = made.node_tree.nodes.new(kind)
+    for name, value in (properties or {}).items():
+        setattr(texture, name, value)
+    said(texture, **inputs)
+    if coordinates is not None:
+        place = node(made, "ShaderNodeTexCoord")
+        moved = node(made, "ShaderNodeMapping", Scale=scale, Location=(0.1, 0.05, 0.2), Rotation=(0.0, 0.0, 0.3))
+        link(made, place.outputs[coordinates], moved.inputs["Vector"])
+        link(made, moved.outputs[0], texture.inputs["Vector"])
+    link(made, texture.outputs[output], shader_of(made).inputs["Color"])
+    hang(made)
+    return made, texture
+
+
+def hang(made) -> None:
+    """Two boards: one before the camera, one that is seen from the side."""
+    primitive("plane", made, at=(-0.8, 0, 0), turn=(90, 0, 0), size=2.2)
+    primitive("cube", made, at=(1.4, 0.4, 0), turn=(20, 10, 35), size=1.3)
+    camera((0, -4, 0), (0, 0, 0))
+
+
+def picture(columns: int = 8, rows: int = 6, square: int = 24):
+    """A picture of coloured squares. They are large: Cycles mixes codes of sRGB where it looks between two pixels, Hyades light."""
+    colors = numpy.ones((rows, columns, 4), "float32")
+    colors[:, :, 0] = numpy.linspace(0, 1, columns)
+    colors[:, :, 1] = numpy.linspace(0, 1, rows)[:, None]
+    colors[:, :, 2] = 0.25 + 0.5 * (numpy.add.outer(numpy.arange(rows), numpy.arange(columns)) % 2)
+    image = bpy.data.images.new("Squares", columns * square, rows * square)
+    image.pixels.foreach_set(colors.repeat(square, 0).repeat(square, 1).reshape(-1))
+    image.update()
+    image.pack()
+    return image
+
+
+@scene(samples=64)
+def image() -> None:
+    board("ShaderNodeTexImage", scale=(2.0, 1.5, 1.0), properties={"image": picture()})
+
+
+@scene(samples=64)
+def image_of_floats() -> None:
+    made = bpy.data.images.new("Light", 8, 8, float_buffer=True)
+    made.pixels.foreach_set([0.2 + 0.1 * (i % 7) if i % 4 < 3 else 1.0 for i in range(8 * 8 * 4)])
+    board("ShaderNodeTexImage", properties={"image": made, "extension": "EXTEND", "interpolation": "Closest"})
+
+
+@scene(samples=64)
+def checker() -> None:
+    board("ShaderNodeTexChecker", coordinates="Object", Scale=3.0, Color1=(0.9, 0.2, 0.1), Color2=(0.1, 0.3, 0.8))
+
+
+@scene(samples=64)
+def checker_generated() -> None:
+    board("ShaderNodeTexChecker", coordinates=None, Scale=5.0, Color1=(0.9, 0.2, 0.1), Color2=(0.1, 0.3, 0.8))
+
+
+@scene(samples=64)
+def noise() -> None:
+    board("ShaderNodeTexNoise", output="Color", coordinates="Generated", Scale=4.0, Detail=3.5, Roughness=0.6, Distortion=0.4)
+
+
+@scene(samples=64)
+def noise_flat() -> None:
+    board("ShaderNodeTexNoise", properties={"noise_dimensions": "2D"}, Scale=6.0, Detail=2.0)
+
+
+@scene(samples=64)
+def noise_in_time() -> None:
+    board("ShaderNodeTexNoise", coordinates="Object", properties={"noise_dimensions": "4D"}, output="Color", Scale=2.0, W=1.7)
+
+
+@scene(samples=64)
+def voronoi() -> None:
+    board("ShaderNodeTexVoronoi", output="Color", coordinates="Object", Scale=3.0, Randomness=0.9)
+
+
+@scene(samples=64)
+def voronoi_f2() -> None:
+    board("ShaderNodeTexVoronoi", coordinates="Object", Scale=3.0,
+          properties={"feature": "F2", "distance": "MANHATTAN", "voronoi_dimensions": "2D"})
+
+
+@scene(samples=64)
+def voronoi_edges() -> None:
+    board("ShaderNodeTexVoronoi", coordinates="Object", Scale=3.0, properties={"feature": "DISTANCE_TO_EDGE"})
+
+
+@scene(samples=64)
+def voronoi_smooth() -> None:
+    board("ShaderNodeTexVoronoi", output="Color", coordinates="Object", Scale=3.0, Smoothness=0.7, properties={"feature": "SMOOTH_F1"})
+
+
+@scene(samples=64)
+def wave() -> None:
+    board("ShaderNodeTexWave", coordinates="Object", properties={"bands_direction": "DIAGONAL"}, Scale=1.5, Distortion=3.0, Detail=2.0)
+
+
+@scene(samples=64)
+def rings() -> None:
+    board("ShaderNodeTexWave", coordinates="Object", properties={"wave_type": "RINGS", "wave_profile": "SAW"}, Scale=1.0)
+
+
+@scene(samples=64)
+def magic() -> None:
+    board("ShaderNodeTexMagic", coordinates="Object", properties={"turbulence_depth": 4}, Scale=2.0, Distortion=1.3)
+
+
+@scene(samples=64)
+def brick() -> None:
+    board("ShaderNodeTexBrick", Scale=4.0, Color1=(0.8, 0.3, 0.2), Color2=(0.5, 0.1, 0.1), Mortar=(0.2, 0.2, 0.2), Mortar_Size=0.03)
+
+
+@scene(samples=64)
+def gradient() -> None:
+    board("ShaderNodeTexGradient", coordinates="Object", properties={"gradient_type": "RADIAL"})
+
+
+@scene(samples=64)
+def ramp() -> None:
+    made, texture = board("ShaderNodeTexGradient", coordinates="UV")
+    colors = node(made, "ShaderNodeValToRGB")
+    colors.color_ramp.elements.new(0.4).color = (0.9, 0.1, 0.1, 1)
+    colors.color_ramp.interpolation = "EASE"
+    link(made, texture.outputs["Fac"], colors.inputs["Fac"])
+    link(made, colors.outputs[0], shader_of(made).inputs["Color"])
+
+
+@scene(samples=64)
+def mixed_colors() -> None:
+    made, texture = board("ShaderNodeTexImage", properties={"image": picture()})
+    mix = node(made, "ShaderNodeMix")
+    mix.data_type, mix.blend_type = "RGBA", "MULTIPLY"
+    mix.inputs[0].default_value = 0.7
+    mix.inputs[7].default_value = (0.9, 0.5, 0.3, 1)
+    link(made, texture.outputs["Color"], mix.inputs[6])
+    link(made, mix.outputs[2], shader_of(made).inputs["Color"])
+
+
+@scene(samples=64)
+def changed_colors() -> None:
+    # Hue, brightness, gamma, curves and inversion behind each other: more than the job's textures say.
+    made, texture = board("ShaderNodeTexImage", properties={"image": picture()})
+    end = texture.outputs["Color"]
+    curves = node(made, "ShaderNodeRGBCurve")
+    curves.mapping.curves[3].points.new(0.4, 0.6)
+    steps = [node(made, "ShaderNodeHueSaturation", Hue=0.6, Saturation=0.8, Value=0.9, Fac=0.9),
+             node(made, "ShaderNodeBrightContrast", Bright=0.05, Contrast=0.2), node(made, "ShaderNodeGamma", Gamma=1.4),
+             curves, node(made, "ShaderNodeInvert", Fac=0.8)]
+    for step in steps:
+        link(made, end, step.inputs["Color"])
+        end = step.outputs["Color"]
+    link(made, end, shader_of(made).inputs["Color"])
+
+
+@scene(samples=64)
+def computed() -> None:
+    # sin(20 x) * y of the coordinates, brought into another range, as a saturation.
+    made, texture = board("ShaderNodeSeparateXYZ", coordinates="UV")
+    wave = node(made, "ShaderNodeMath")
+    wave.operation = "SINE"
+    factor = node(made, "ShaderNodeMath")
+    factor.operation, factor.inputs[1].default_value = "MULTIPLY", 20.0
+    product = node(made, "ShaderNodeMath")
+    product.operation = "MULTIPLY"
+    ranged = node(made, "ShaderNodeMapRange", From_Min=-1.0, To_Min=0.1, To_Max=0.9)
+    combined = node(made, "ShaderNodeCombineColor", Green=0.7, Blue=0.6)
+    combined.mode = "HSV"
+    link(made, texture.outputs["X"], factor.inputs[0])
+    link(made, factor.outputs[0], wave.inputs[0])
+    link(made, wave.outputs[0], product.inputs[0])
+    link(made, texture.outputs["Y"], product.inputs[1])
+    link(made, product.outputs[0], ranged.inputs["Value"])
+    link(made, ranged.outputs[0], combined.inputs[0])
+    link(made, combined.outputs[0], shader_of(made).inputs["Color"])
+
+
+@scene(samples=64)
+def vertex_colors() -> None:
+    made = material(node="ShaderNodeEmission")
+    color = node(made, "ShaderNodeVertexColor")
+    color.layer_name = "Paint"
+    link(made, color.outputs["Color"], shader_of(made).inputs["Color"])
+    board = primitive("grid", made, turn=(90, 0, 0), size=3, x_subdivisions=7, y_subdivisions=5)
+    paint = board.data.color_attributes.new("Paint", "FLOAT_COLOR", "CORNER")
+    for i, corner in enumerate(paint.data):
+        corner.color = (0.2 + 0.1 * (i % 8), 0.8 - 0.1 * (i % 5), 0.1 * (i % 9), 1)
+    camera((0, -4, 0), (0, 0, 0))
+
+
+@scene(samples=64)
+def second_uv_map() -> None:
+    made, texture = board("ShaderNodeTexImage", coordinates=None, properties={"image": picture(), "interpolation": "Closest"})
+    other = node(made, "ShaderNodeUVMap")
+    other.uv_map = "Other"
+    link(made, other.outputs[0], texture.inputs["Vector"])
+    for object in bpy.data.objects:
+        if object.type == "MESH":
+            layer = object.data.uv_layers.new(name="Other")
+            for i, corner in enumerate(layer.data):
+                corner.uv = (0.3 * (i % 4), 0.2 * (i % 3))
+
+
+@scene(samples=128, block=0.08)
+def bump() -> None:
+    made = material(node="ShaderNodeBsdfDiffuse", Color=0.8)
+    wave = node(made, "ShaderNodeTexImage")
+    image = bpy.data.images.new("Heights", 64, 64, float_buffer=True)
+    image.colorspace_settings.name = "Non-Color"
+    values = [0.5 + 0.5 * math.sin(2 * math.pi * x / 32) for _ in range(64) for x in range(64)]
+    image.pixels.foreach_set([channel for value in values for channel in (value, value, value, 1.0)])
+    wave.image = image
+    bump = node(made, "ShaderNodeBump", Strength=1.0, Distance=0.2)
+    link(made, wave.outputs["Color"], bump.inputs["Height"])
+    link(made, bump.outputs[0], shader_of(made).inputs["Normal"])
+    lit_board(made)
+
+
+@scene(samples=128)
+def normal_map() -> None:
+    made = material(node="ShaderNodeBsdfDiffuse", Color=0.8)
+    texture = node(made, "ShaderNodeTexImage")
+    image = bpy.data.images.new("Normals", 2, 2, float_buffer=True)
+    image.colorspace_settings.name = "Non-Color"
+    image.pixels.foreach_set([0.7, 0.5, 0.9, 1, 0.5, 0.7, 0.9, 1, 0.3, 0.5, 0.9, 1, 0.5, 0.3, 0.9, 1])
+    texture.image, texture.interpolation = image, "Closest"
+    turned = node(made, "ShaderNodeNormalMap", Strength=0.8)
+    link(made, texture.outputs["Color"], turned.inputs["Color"])
+    link(made, turned.outputs[0], shader_of(made).inputs["Normal"])
+    lit_board(made)
+
+
+def lit_board(made) -> None:
+    """A board with a lamp from the side."""
+    primitive("plane", made, turn=(90, 0, 0), size=4)
+    camera((0, -4, 0), (0, 0, 0))
+    light("SUN", 3, at=(3, -4, 2), angle=0)
+
