@@ -33,8 +33,10 @@ def translated(context: Context, camera: Any) -> cameras.Camera:
             context.complain(where, f"panoramas of type {kind.lower()} are not supported; equirectangular is used")
         return cameras.Equirectangular(**placed)
     frame = Frame(context.scene.render, data)
-    lens = _lens(context, camera, pose, frame)
+    lens = _lens(context, camera, pose)
     if data.type == "ORTHO":
+        # All rays are parallel: a shift of the picture is one of the camera.
+        placed |= pose.moved(data.shift_x * data.ortho_scale, data.shift_y * data.ortho_scale)
         return cameras.Orthographic(height=data.ortho_scale * frame.height, **placed, **lens)
     fov = math.degrees(2 * math.atan(frame.sensor * frame.height / (2 * data.lens)))
     return cameras.Perspective(fov=fov, shift=frame.shift, **placed, **lens)
@@ -46,10 +48,16 @@ class Pose:
     def __init__(self, matrix: Any) -> None:
         matrix = axes.placed(matrix)
         forward = -matrix[:3, 2] / numpy.linalg.norm(matrix[:3, 2])
-        self.forward = forward
+        self.forward, self.right = forward, matrix[:3, 0] / numpy.linalg.norm(matrix[:3, 0])
         self.place = axes.numbers(matrix[:3, 3])
         self.ahead = axes.numbers(matrix[:3, 3] + forward)
         self.up = axes.numbers(matrix[:3, 1] / numpy.linalg.norm(matrix[:3, 1]))
+
+
+    def moved(self, right: float, up: float) -> dict[str, list[float]]:
+        """Where a camera stands and looks that is moved in its picture's plane."""
+        step = right * self.right + up * numpy.array(self.up)
+        return {"look_from": axes.numbers(self.place + step), "look_at": axes.numbers(self.ahead + step)}
 
 
 class Frame:
@@ -74,11 +82,9 @@ def panorama_type(context: Context, data: Any) -> str:
     return getattr(getattr(data, "cycles", None), "panorama_type", "EQUIRECTANGULAR")
 
 
-def _lens(context: Context, camera: Any, pose: Pose, frame: Frame) -> dict[str, Any]:
+def _lens(context: Context, camera: Any, pose: Pose) -> dict[str, Any]:
     """Aperture and focus; nothing where all is sharp."""
     data = camera.data
-    if data.type == "ORTHO" and (data.shift_x or data.shift_y):
-        context.complain(f"camera '{camera.name}'", "orthographic cameras have no shift; it is left out")
     dof = data.dof
     if not dof.use_dof:
         return {}

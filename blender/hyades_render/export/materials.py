@@ -11,6 +11,7 @@ from .context import Context, free_name
 from .nodes import bsdfs, native, principled  # noqa: F401  (they register)
 from .nodes import graph, values
 from .nodes.closures import closure_of, with_opacity
+from .nodes.displacement import Displacement, add_bump, displacement_of
 from .nodes.surface import PartOfSurface
 from .nodes.translator import Translator
 from .nodes.values import Value
@@ -29,6 +30,8 @@ class Made:
     """The UV map that its textures look at; None: none."""
     color_attribute: Optional[str]
     is_baked: bool
+    displacement: Optional[Displacement] = None
+    """How the surface is moved."""
 
 
 def material_of(context: Context, part: PartOfSurface, data: Any) -> Made:
@@ -70,8 +73,10 @@ def _translated(translator: Translator, data: Any) -> Made:
     material = with_opacity(closure) or materials.Black()
     if not has_surface and medium is not None:
         material = materials.NullMaterial()
-    displacement = graph.find_input(output, (), "Displacement")
-    if displacement is not None and displacement.socket.is_linked:
-        translator.context.complain(translator.where, "displacement is not supported yet; the surface stays where it is")
+    displacement = displacement_of(translator, data, output)
+    if displacement is not None and not displacement.is_real:
+        add_bump(displacement, material)
+        displacement = None
     emission = values.quotient(closure.emission, values.held(closure.opacity))
-    return Made(material, emission, medium, translator.uv_map, translator.color_attribute, translator.baked)
+    seen = (translator.uv_map, translator.color_attribute, translator.baked)
+    return Made(material, emission, medium, *seen, displacement)

@@ -15,8 +15,10 @@ from .lights import PlacedLight, add_light
 from .materials import Made, material_of
 from .meshes import Surface, part
 from .nodes import values
+from .nodes.displacement import displaced
 from .nodes.surface import PartOfSurface
 from .places import MatrixPlaces
+from .volumes import add_volume
 
 _WITH_SURFACE = {"MESH", "CURVE", "SURFACE", "META", "FONT"}
 _WITHOUT = {"CAMERA", "EMPTY", "LATTICE", "ARMATURE", "SPEAKER", "LIGHT_PROBE", "GPENCIL", "GREASEPENCIL"}
@@ -62,6 +64,8 @@ def add_objects(context: Context) -> None:
                 _add_one(context, object, axes.array(instance.matrix_world))
         elif kind == "LIGHT":
             add_light(context, PlacedLight(object.name, object, axes.placed(instance.matrix_world)))
+        elif kind == "VOLUME":
+            add_volume(context, object, axes.array(instance.matrix_world))
         elif kind not in _WITHOUT:
             context.complain(f"object '{object.name}'", f"objects of type {kind.lower()} are not supported yet")
     for one in copies.values():
@@ -94,6 +98,8 @@ def pieces_of(context: Context, object: Any, matrix: Any) -> list[Piece]:
 
 def _piece(context: Context, piece: PartOfSurface, data: Any) -> Piece:
     made = material_of(context, piece, data)
+    if made.displacement is not None:
+        piece = displaced(made.displacement, piece)
     atlas = piece.atlas.uv() if made.is_baked and piece.atlas is not None else None
     return Piece(part(piece.surface, piece.triangles, made.uv_map, made.color_attribute, atlas), made)
 

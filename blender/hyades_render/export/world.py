@@ -133,7 +133,7 @@ def _sky(translator: Translator, source: Output, strength: float) -> hyades.Envi
     towards = [flat * math.sin(turn), math.sin(elevation), -flat * math.cos(turn)]
     sky = hyades.Sky(sun_direction=towards, sun=bool(disc), sun_size=min(math.degrees(size), 90.0))
     sky.irradiance = _SUN
-    sky.ground_albedo = 0
+    sky.ground_albedo = 0.1
     dust = float(getattr(node, "dust_density", getattr(node, "aerosol_density", 1.0)))
     sky.turbidity = min(max(1 + 0.2 * dust, 1.0), 10.0)
     return hyades.Environment(sky=sky, strength=strength)

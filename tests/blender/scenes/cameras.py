@@ -65,6 +65,7 @@ def orthographic_shifted() -> None:
 @scene(samples=96)
 def panorama() -> None:
     things()
+    bpy.data.objects["Sun"].data.angle = 0  # Hyades' camera sees the sun's disc, that of Cycles does not
     object = camera((0.5, -1, 1.2), (0, 3, 1.2))
     object.data.type = "PANO"
     object.data.cycles.panorama_type = "EQUIRECTANGULAR"
@@ -101,3 +102,11 @@ def border_and_percentage() -> None:
 def scaled_camera() -> None:
     things()
     seen().scale = (2, 2, 2)
+
+
+@scene(samples=96)
+def transparent_film() -> None:
+    things()
+    seen()
+    bpy.data.objects["Plane"].hide_render = True
+    bpy.context.scene.render.film_transparent = True

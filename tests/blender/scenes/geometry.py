@@ -55,7 +55,7 @@ def materials_per_face() -> None:
     body.data.polygons.foreach_set("material_index", [i % 3 for i in range(len(body.data.polygons))])
 
 
-@scene(samples=128)
+@scene(samples=128, block=0.08)  # large triangles that are shaded smoothly: at the shadow's edge each has its own remedy
 def mirrored_and_stretched() -> None:
     lit()
     paint = material(Color=(0.6, 0.4, 0.7))
@@ -126,3 +126,26 @@ def color_by_object() -> None:
     for x, color in ((-1.2, (0.8, 0.1, 0.1, 1)), (1.2, (0.1, 0.3, 0.8, 1))):
         primitive("cube", made, at=(x, 0, 0.5), size=1).color = color
     camera((0, -6, 2.5), (0, 0, 0.5))
+
+
+def displaced_grid(method: str, scale: float, cuts: int):
+    made = material(Color=(0.6, 0.5, 0.3))
+    made.cycles.displacement_method = method
+    noise = node(made, "ShaderNodeTexNoise", Scale=1.5, Detail=1.0)
+    moved = node(made, "ShaderNodeDisplacement", Midlevel=0.4, Scale=scale)
+    link(made, node(made, "ShaderNodeTexCoord").outputs["Object"], noise.inputs["Vector"])
+    link(made, noise.outputs["Fac"], moved.inputs["Height"])
+    link(made, moved.outputs[0], made.node_tree.nodes["Material Output"].inputs["Displacement"])
+    return primitive("grid", made, at=(0, 0, 0.6), size=4, x_subdivisions=cuts, y_subdivisions=cuts, smooth=True)
+
+
+@scene(samples=128)
+def displaced() -> None:
+    lit()
+    displaced_grid("DISPLACEMENT", 1.5, 60)
+
+
+@scene(samples=128, block=0.08)
+def displaced_in_looks() -> None:
+    lit()
+    displaced_grid("BUMP", 0.4, 4)

@@ -32,26 +32,26 @@ def environment(turn=(0.0, 0.0, 0.0)):
     return nodes
 
 
-@scene()
+@scene(samples=128)
 def environment_image() -> None:
     room()
     environment()
 
 
-@scene()
+@scene(samples=128)
 def environment_turned() -> None:
     room()
     environment((0.0, 0.0, 1.9))
 
 
-@scene()
+@scene(samples=128)
 def environment_tilted() -> None:
     # More than a turn about the vertical: it is computed.
     room()
     environment((0.4, 0.2, 1.0))
 
 
-@scene()
+@scene(samples=128)
 def gradient_world() -> None:
     room()
     nodes = world(1.0)
@@ -67,7 +67,7 @@ def gradient_world() -> None:
 
 
 # Hillaire's sky and Nishita's are two models: alike on the whole, not in their blues.
-@scene(mean=0.35, block=0.3, complaints=("the sky is the job's own",))
+@scene(mean=0.2, block=0.6, complaints=("the sky is the job's own",))
 def sky() -> None:
     room()
     nodes = world(1.0, 0.1)
@@ -76,7 +76,7 @@ def sky() -> None:
     link(nodes, texture.outputs[0], nodes.nodes["Background"].inputs["Color"])
 
 
-@scene(block=0.06)
+@scene(samples=48, block=0.08)
 def fog() -> None:
     floor()
     primitive("uv_sphere", material("Ball", Color=(0.8, 0.4, 0.2)), at=(0, 0, 1), smooth=True, segments=64, ring_count=32)

@@ -25,6 +25,11 @@ def medium_of(translator: Translator, end: Optional[Input]) -> Optional[media.Me
     found = graph.source(end) if end is not None else None
     if not isinstance(found, Output):
         return None
+    return medium_of_node(translator, found)
+
+
+def medium_of_node(translator: Translator, found: Output) -> media.Medium:
+    """What a shader of volumes, or a sum of them, fills a body with."""
     total = _Sum()
     _add(translator, found, 1.0, total)
     keys = {"absorption": total.absorption, "scattering": total.scattering, "emission": total.emission}
@@ -83,5 +88,3 @@ def _add(translator: Translator, output: Output, share: float, total: _Sum) -> N
         total.absorption = _plus(total.absorption, _scaled(rest, density))
         strength = share * _number(translator, output, "Emission Strength")
         total.emission = _plus(total.emission, _scaled(_color(translator, output, "Emission Color"), strength))
-        if _number(translator, output, "Blackbody Intensity"):
-            translator.complain(node, "the light of black bodies is left out where there is no temperature")

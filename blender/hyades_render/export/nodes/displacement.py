@@ -1,0 +1,115 @@
+"""Input "Displacement" of a material: as bumps, or by moving the vertices that the mesh has, as Cycles does."""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple, Optional
+
+import numpy
+from hyades import materials
+
+from ..meshes import Surface
+from . import graph, values
+from .evaluate import Evaluator
+from .graph import Output
+from .surface import PartOfSurface, PartPoints
+from .translator import Inexpressible, Translator
+
+Array = Any
+
+
+class Displacement(NamedTuple):
+    """How far the surface moves along its normal: (height - midlevel) * scale."""
+
+    translator: Translator
+    node: Output
+    is_real: bool
+    """It moves; otherwise it only looks like that."""
+
+    def offsets(self, part: PartOfSurface) -> Array:
+        """(t * 3,) for the corners of a part. Inexpressible: it cannot be computed."""
+        count = len(part.triangles)
+        points = PartPoints(part, numpy.repeat(numpy.arange(count), 3), numpy.tile(numpy.eye(3), (count, 1)))
+        at = Evaluator(self.translator, points)
+        height, middle, scale = (at.number(self.node, name) for name in ("Height", "Midlevel", "Scale"))
+        return numpy.broadcast_to((height - middle) * scale, (count * 3,))
+
+
+def displacement_of(translator: Translator, data: Any, output: Any) -> Optional[Displacement]:
+    """What is linked to the output's input; None: nothing, or what is not supported."""
+    end = graph.find_input(output, (), "Displacement")
+    found = graph.source(end) if end is not None else None
+    if not isinstance(found, Output):
+        return None
+    if found.node.type != "DISPLACEMENT":
+        translator.complain(found.node, "only a node Displacement displaces; the surface stays where it is")
+        return None
+    # The key moved from Cycles' to the material's own in 4.1.
+    method = getattr(data, "displacement_method", None) or getattr(data.cycles, "displacement_method", "BUMP")
+    if method == "BOTH":
+        translator.complain(found.node, "vertices are moved; what is finer than the mesh is left out")
+    return Displacement(translator, found, method != "BUMP")
+
+
+def add_bump(displacement: Displacement, material: Any) -> None:
+    """Lets all parts of a material that have no bump of their own look displaced."""
+    translator, node = displacement.translator, displacement.node
+    height = translator.value(node.input("Height"))
+    if not values.is_texture(height):
+        return
+    scale = values.number(translator.constant(node.input("Scale"), 1.0))
+    for one in _parts(material):
+        if "bump" in one.keys() and one.bump is None:
+            one.bump = materials.Bump(texture=height, height=scale)
+
+
+def _parts(material: Any) -> list[Any]:
+    if isinstance(material, materials.Mix):
+        return _parts(material.first) + _parts(material.second)
+    if isinstance(material, materials.TwoSided):
+        return _parts(material.front) + _parts(material.back)
+    return [material] if isinstance(material, materials.Material) else []
+
+
+def displaced(displacement: Displacement, part: PartOfSurface) -> PartOfSurface:
+    """The part with its vertices moved along their smooth normals."""
+    surface = part.surface
+    vertices = surface.corner_vertices
+    try:
+        offsets = displacement.offsets(part)
+    except Inexpressible as why:
+        displacement.translator.complain(why.node, f"{why.why}; the surface stays where it is")
+        return part
+    normals = _smooth_normals(surface.positions, vertices[surface.triangles])
+    far = numpy.zeros(len(surface.positions))
+    far[vertices[part.triangles.reshape(-1)]] = offsets
+    moved = (surface.positions + normals * far[:, None]).astype("float32")
+    result = PartOfSurface(_Moved(surface, moved), part.triangles)
+    result.atlas = part.atlas
+    return result
+
+
+class _Moved(Surface):
+    """A surface whose vertices are elsewhere."""
+
+    def __init__(self, surface: Surface, positions: Array) -> None:
+        self.mesh, self.object, self.matrix = surface.mesh, surface.object, surface.matrix
+        self._read = dict(surface._read)
+        self._read["positions"] = positions
+        if surface.shading()[0] != "face":
+            normals = _smooth_normals(positions, surface.corner_vertices[surface.triangles])
+            self._read["shading"] = ("point", normals.astype("float32"))
+
+
+def _smooth_normals(positions: Array, triangles: Array) -> Array:
+    """(v, 3): the mean of the triangles around each vertex, by their angles."""
+    corners = positions[triangles].astype("float64")
+    result = numpy.zeros((len(positions), 3))
+    face = numpy.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    face /= numpy.maximum(numpy.linalg.norm(face, axis=1, keepdims=True), 1e-30)
+    for i in range(3):
+        a, b = corners[:, (i + 1) % 3] - corners[:, i], corners[:, (i + 2) % 3] - corners[:, i]
+        size = numpy.linalg.norm(a, axis=1) * numpy.linalg.norm(b, axis=1)
+        angle = numpy.arccos(numpy.clip((a * b).sum(axis=1) / numpy.maximum(size, 1e-30), -1, 1))
+        for axis in range(3):
+            result[:, axis] += numpy.bincount(triangles[:, i], face[:, axis] * angle, len(positions))
+    return result / numpy.maximum(numpy.linalg.norm(result, axis=1, keepdims=True), 1e-30)
