@@ -21,6 +21,7 @@ class JobFiles:
         self.folder = folder
         self.made: dict[str, bytes] = {}
         self.named: list[str] = []  # paths as the job has them
+        self._known: dict[int, tuple[Any, str]] = {}  # what was encoded already, by its identity
 
     def reference(self, value: Any) -> str:
         """What the job calls a file: a path, something with encode(), an array, or those by frame."""
@@ -28,11 +29,15 @@ class JobFiles:
             path = os.path.relpath(os.path.abspath(value), os.path.abspath(self.folder))
             self.named.append(Path(path).as_posix())
             return self.named[-1]
+        if id(value) in self._known:
+            return self._known[id(value)][1]
         if isinstance(value, Mapping):
-            return self._sequence(value)
-        data, end = _encoded(value)
-        name = f"{_FOLDER}/{_digest(data)}{end}"
-        self.made[name] = data
+            name = self._sequence(value)
+        else:
+            data, end = _encoded(value)
+            name = f"{_FOLDER}/{_digest(data)}{end}"
+            self.made[name] = data
+        self._known[id(value)] = (value, name)  # kept, so that its identity stays its own
         return name
 
     def _sequence(self, meshes: Mapping[int, Any]) -> str:

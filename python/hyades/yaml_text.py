@@ -37,6 +37,27 @@ def flow(value: Any) -> str:
     return scalar(value)
 
 
+def _may_be_short(value: Any) -> bool:
+    """False where it cannot stand on one line: writing it down to see that would take long for large values."""
+    left = _WIDTH
+    heap = [value]
+    while heap:
+        one = heap.pop()
+        left -= 2
+        if left < 0:
+            return _is_matrix(value)
+        if isinstance(one, dict):
+            heap.extend(one.values())
+        elif isinstance(one, (list, tuple)):
+            heap.extend(one)
+    return True
+
+
+def _is_matrix(value: Any) -> bool:
+    """16 numbers stay on one line, however long."""
+    return isinstance(value, (list, tuple)) and len(value) == 16 and all(isinstance(x, (int, float)) for x in value)
+
+
 class YamlText:
     """A document that is written line by line; `sources` are what its lines were made of."""
 
@@ -62,11 +83,12 @@ class YamlText:
 
     def _add(self, start: str, value: Any, depth: int, top: bool = False) -> None:
         """`value` behind `start`, which stands `depth` steps from the margin."""
-        line = "  " * depth + start + " " + flow(value)
         is_section = top and isinstance(value, dict) and any(isinstance(v, dict) for v in value.values())
-        if not isinstance(value, (dict, list)) or not value or (len(line) <= _WIDTH and not is_section):
-            self._line(line, value)
-            return
+        if not is_section and _may_be_short(value):
+            line = "  " * depth + start + " " + flow(value)
+            if not isinstance(value, (dict, list)) or not value or len(line) <= _WIDTH or _is_matrix(value):
+                self._line(line, value)
+                return
         self._line("  " * depth + start, value)
         if isinstance(value, dict):
             for name, item in value.items():
@@ -77,7 +99,7 @@ class YamlText:
 
     def _add_item(self, item: Any, depth: int) -> None:
         line = "  " * depth + "- " + flow(item)
-        if not isinstance(item, dict) or len(line) <= _WIDTH:
+        if not isinstance(item, dict) or len(line) <= _WIDTH or (len(item) == 1 and _is_matrix(*item.values())):
             self._line(line, item)
             return
         for place, (name, value) in enumerate(item.items()):
