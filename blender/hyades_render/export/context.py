@@ -31,7 +31,7 @@ class Context:
         self.job = hyades.Job()
         self.complaints: list[Complaint] = []
         self.materials: dict[Any, Any] = {}  # translated ones, by what they depend on
-        self.meshes: dict[Any, Any] = {}  # parts of meshes by their data
+        self.pieces: dict[Any, Any] = {}  # parts of meshes, by the data and materials that several objects have
 
     def complain(self, where: str, what: str) -> None:
         """Notes a difference once."""
@@ -49,9 +49,14 @@ def free_name(wanted: str, taken: Any) -> str:
     allowed = "".join(c if c.isascii() and (c.isalnum() or c in "_-. ") else "_" for c in wanted).strip(" ")
     if not allowed or not (allowed[0].isalnum() or allowed[0] == "_"):
         allowed = "_" + allowed
-    name = allowed = allowed[:90].rstrip(" ")
-    number = 1
-    while name in taken:
-        number += 1
-        name = f"{allowed}-{number}"
-    return name
+    base = allowed[:90].rstrip(" ")
+    if base not in taken:
+        return base
+    # Numbers are taken from 2 on without gaps, so that the next one is found without trying them all.
+    low, high = 1, 2
+    while f"{base}-{high}" in taken:
+        low, high = high, 2 * high
+    while high - low > 1:
+        middle = (low + high) // 2
+        low, high = (middle, high) if f"{base}-{middle}" in taken else (low, middle)
+    return f"{base}-{high}"

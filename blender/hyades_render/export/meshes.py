@@ -47,6 +47,11 @@ class Surface:
         return self._array("triangles", self.mesh.loop_triangles, "loops", 3, "int32")
 
     @property
+    def vertex_triangles(self) -> Array:
+        """(t, 3): vertices of the triangles."""
+        return self._array("vertex_triangles", self.mesh.loop_triangles, "vertices", 3, "int32")
+
+    @property
     def slots(self) -> Array:
         """(t,): the material slot of each triangle."""
         if len(self.mesh.materials) < 2 and len(self.object.material_slots) < 2:
@@ -158,29 +163,31 @@ def _shading(mesh: Any) -> tuple[str, Optional[Array]]:
         items, key = (mesh.vertices, "normal") if domain == "point" else (mesh.loops, "normal")
     flat = numpy.empty(len(items) * 3, "float32")
     items.foreach_get(key, flat)
+    if domain == "corner" and hasattr(mesh, "free_normals_split"):
+        mesh.free_normals_split()
     return domain, flat.reshape(-1, 3)
 
 
-def part(surface: Surface, triangles: Array, uv_map: Optional[str], color: Optional[str], atlas: Any) -> hyades.MeshData:
-    """Triangles (t, 3 corners) of a surface as a mesh of the job.
+def part(surface: Surface, chosen: Any, uv_map: Optional[str], color: Optional[str], atlas: Any) -> hyades.MeshData:
+    """Triangles of a surface, chosen by an index or slice, as a mesh of the job.
 
     uv_map, color: the UV map and colour attribute that textures look at; None: none does. atlas (t, 3, 2): second
     coordinates, which baked pictures have; None: there are none.
     """
-    vertices = surface.corner_vertices
     domain, normals = surface.shading()
     uvs = None if uv_map is None else surface.uv(uv_map)
     colors = None if color is None else surface.color(color)
     by_corner = [array for array in (normals if domain == "corner" else None, uvs, colors) if array is not None]
+    if atlas is None and not by_corner:
+        used, faces = _compact(surface.vertex_triangles[chosen], len(surface.positions))
+        at_points = normals[used] if domain == "point" else None
+        return hyades.MeshData(surface.positions[used], faces, normals=at_points)
+    vertices, triangles = surface.corner_vertices, surface.triangles[chosen]
     if atlas is not None:
         corners = triangles.reshape(-1)
         faces = numpy.arange(len(corners), dtype="int32").reshape(-1, 3)
-    elif by_corner:
-        corners, faces = _shared(vertices, triangles, by_corner)
     else:
-        used, faces = _compact(vertices[triangles], len(surface.positions))
-        at_points = normals[used] if domain == "point" else None
-        return hyades.MeshData(surface.positions[used], faces, normals=at_points)
+        corners, faces = _shared(vertices, triangles, by_corner)
     if domain == "point":
         normals = normals[vertices[corners]]
     elif domain == "corner":
@@ -195,13 +202,13 @@ def part(surface: Surface, triangles: Array, uv_map: Optional[str], color: Optio
     )
 
 
-def _compact(indices: Array, count: int) -> tuple[Array, Array]:
-    """Which of `count` things are named, and the indices among those."""
+def _compact(indices: Array, count: int) -> tuple[Any, Array]:
+    """Which of `count` things are named, as an index, and the indices among those."""
     named = numpy.zeros(count, bool)
     named[indices.reshape(-1)] = True
+    if named.all():
+        return slice(None), indices
     used = numpy.flatnonzero(named)
-    if len(used) == count:
-        return used, indices
     place = numpy.cumsum(named, dtype="int32") - 1
     return used, place[indices]
 

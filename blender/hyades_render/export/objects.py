@@ -45,36 +45,55 @@ class _Copies(NamedTuple):
     name: str
     pieces: list[Piece]
     is_seen: bool
-    matrices: list[list[float]]
+    matrices: list[tuple[float, ...]]
+    """Three rows each."""
 
 
 def add_objects(context: Context) -> None:
     """Adds what has a surface, and the lamps, to the job."""
     copies: dict[Any, _Copies] = {}
     for instance in context.depsgraph.object_instances:
-        if not instance.show_self:
-            continue
         # Blender may give the object of an instance for this step alone: all is taken from it here.
         object = instance.object
-        kind = object.type
-        if kind in _WITH_SURFACE:
-            if instance.is_instance:
-                _add_copy(context, copies, object, instance.matrix_world)
-            else:
-                _add_one(context, object, axes.array(instance.matrix_world))
-        elif kind == "LIGHT":
-            add_light(context, PlacedLight(object.name, object, axes.placed(instance.matrix_world)))
-        elif kind == "VOLUME":
-            add_volume(context, object, axes.array(instance.matrix_world))
-        elif kind not in _WITHOUT:
-            context.complain(f"object '{object.name}'", f"objects of type {kind.lower()} are not supported yet")
+        if instance.is_instance:  # there may be millions
+            data = object.data
+            known = copies.get((object.as_pointer(), data.as_pointer())) if data is not None else None
+            if known is not None:
+                first, second, third, _ = instance.matrix_world
+                known.matrices.append(first[:] + second[:] + third[:])
+                continue
+        if instance.show_self:
+            _add(context, copies, instance, object)
     for one in copies.values():
         _place(context, one)
+
+
+def _add(context: Context, copies: dict[Any, _Copies], instance: Any, object: Any) -> None:
+    """One object, or the first of many copies."""
+    kind, matrix = object.type, axes.array(instance.matrix_world)
+    if kind in _WITH_SURFACE and instance.is_instance:
+        pieces = pieces_of(context, object, matrix)
+        found = _Copies(object.name, pieces, _is_seen(context, object), [tuple(matrix[:3].reshape(-1))])
+        copies[(object.as_pointer(), object.data.as_pointer())] = found
+    elif kind in _WITH_SURFACE:
+        is_seen = _is_seen(context, object)
+        for piece in pieces_of(context, object, matrix):
+            _add_piece(context, object.name, piece, axes.placed(matrix), is_seen)
+    elif kind == "LIGHT":
+        add_light(context, PlacedLight(object.name, object, axes.placed(matrix)))
+    elif kind == "VOLUME":
+        add_volume(context, object, matrix)
+    elif kind not in _WITHOUT:
+        context.complain(f"object '{object.name}'", f"objects of type {kind.lower()} are not supported yet")
 
 
 @contextmanager
 def evaluated_mesh(object: Any) -> Iterator[Any]:
     """The mesh that an object has after its modifiers; None: it has none."""
+    if object.type == "MESH" and object.mode != "EDIT":
+        # That of the evaluated object, without a copy.
+        yield object.data if len(object.data.polygons) else None
+        return
     mesh = object.to_mesh()
     try:
         yield mesh if mesh is not None and len(mesh.polygons) else None
@@ -84,36 +103,36 @@ def evaluated_mesh(object: Any) -> Iterator[Any]:
 
 def pieces_of(context: Context, object: Any, matrix: Any) -> list[Piece]:
     """The parts of an object's evaluated mesh, one for each material; `matrix` leads into Blender's world."""
+    is_mesh = object.type == "MESH"
+    materials = tuple(slot.material.name_full if slot.material else "" for slot in object.material_slots)
+    key = (object.data.as_pointer(), materials)
+    if is_mesh and key in context.pieces:
+        return context.pieces[key]
     with evaluated_mesh(object) as mesh:
         if mesh is None:
             return []
         surface = Surface(mesh, object, matrix)
         slots = surface.slots
-        found = []
-        for slot in numpy.unique(slots):
-            triangles = surface.triangles if len(slots) == 0 or (slots == slot).all() else surface.triangles[slots == slot]
-            found.append(_piece(context, PartOfSurface(surface, triangles), _material_in(object, int(slot))))
-        return found
+        kinds = numpy.unique(slots)
+        parts = [PartOfSurface(surface, slots == slot if len(kinds) > 1 else slice(None)) for slot in kinds]
+        found = [_piece(context, one, _material_in(object, int(slot))) for one, slot in zip(parts, kinds)]
+    if is_mesh and not any(one.is_of_object for one in parts):
+        context.pieces[key] = found  # objects without modifiers of their own share their mesh
+    return found
 
 
-def _piece(context: Context, piece: PartOfSurface, data: Any) -> Piece:
-    made = material_of(context, piece, data)
-    if made.displacement is not None:
-        piece = displaced(made.displacement, piece)
+def _piece(context: Context, whole: PartOfSurface, data: Any) -> Piece:
+    made = material_of(context, whole, data)
+    piece = whole if made.displacement is None else displaced(made.displacement, whole)
+    whole.is_of_object |= piece.is_of_object
     atlas = piece.atlas.uv() if made.is_baked and piece.atlas is not None else None
-    return Piece(part(piece.surface, piece.triangles, made.uv_map, made.color_attribute, atlas), made)
+    return Piece(part(piece.surface, piece.chosen, made.uv_map, made.color_attribute, atlas), made)
 
 
 def _material_in(object: Any, slot: int) -> Optional[Any]:
     slots = object.material_slots
     # A slot that is not there stands for the last one.
     return slots[min(slot, len(slots) - 1)].material if len(slots) else None
-
-
-def _add_one(context: Context, object: Any, matrix: Any) -> None:
-    is_seen = _is_seen(context, object)
-    for piece in pieces_of(context, object, matrix):
-        _add_piece(context, object.name, piece, axes.placed(matrix), is_seen)
 
 
 def _add_piece(context: Context, name: str, piece: Piece, matrix: Any, is_seen: bool) -> None:
@@ -134,19 +153,12 @@ def _is_seen(context: Context, object: Any) -> bool:
     return bool(object.visible_camera)
 
 
-def _add_copy(context: Context, copies: dict[Any, _Copies], object: Any, matrix: Any) -> None:
-    data = object.data
-    key = (object.name_full, data.name_full, data.as_pointer())
-    known = copies.get(key)
-    if known is None:
-        pieces = pieces_of(context, object, axes.array(matrix))
-        copies[key] = known = _Copies(object.name, pieces, _is_seen(context, object), [])
-    known.matrices.append([number for row in matrix for number in row])
-
-
 def _place(context: Context, copies: _Copies) -> None:
     """Copies as a group that is placed by a file; one by one where they are few, or shine."""
-    placed = axes.TO_JOB @ numpy.array(copies.matrices).reshape(-1, 4, 4)
+    matrices = numpy.zeros((len(copies.matrices), 4, 4))
+    matrices[:, :3] = numpy.array(copies.matrices).reshape(-1, 3, 4)
+    matrices[:, 3, 3] = 1
+    placed = axes.TO_JOB @ matrices
     # What has no volume is not seen, and the job refuses it.
     placed = placed[numpy.abs(numpy.linalg.det(placed[:, :3, :3])) > 1e-18]
     shines = any(not values.is_constant(piece.made.emission, 0) for piece in copies.pieces)

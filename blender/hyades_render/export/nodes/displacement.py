@@ -83,8 +83,8 @@ def displaced(displacement: Displacement, part: PartOfSurface) -> PartOfSurface:
     far = numpy.zeros(len(surface.positions))
     far[vertices[part.triangles.reshape(-1)]] = offsets
     moved = (surface.positions + normals * far[:, None]).astype("float32")
-    result = PartOfSurface(_Moved(surface, moved), part.triangles)
-    result.atlas = part.atlas
+    result = PartOfSurface(_Moved(surface, moved), part.chosen)
+    result.atlas, result.is_of_object = part.atlas, part.is_of_object
     return result
 
 

@@ -13,16 +13,27 @@ Array = Any
 
 
 class PartOfSurface:
-    """The triangles (t, 3 corners) of a surface that have one material. `atlas`: where baked pictures have them, once one is made."""
+    """The triangles of a surface that have one material.
 
-    def __init__(self, surface: Surface, triangles: Array) -> None:
+    `atlas`: where baked pictures have them, once one is made. `is_of_object`: something of it depends on the object or
+    its place, not on its mesh alone.
+    """
+
+    def __init__(self, surface: Surface, chosen: Any) -> None:
+        """`chosen`: an index or slice of the surface's triangles."""
         self.surface = surface
-        self.triangles = triangles
+        self.chosen = chosen
         self.atlas: Any = None
+        self.is_of_object = False
+
+    @property
+    def triangles(self) -> Array:
+        """(t, 3): corners of the triangles."""
+        return self.surface.triangles[self.chosen]
 
     def corners(self) -> Array:
         """(t, 3, 3): positions of the corners."""
-        return self.surface.positions[self.surface.corner_vertices[self.triangles]]
+        return self.surface.positions[self.surface.vertex_triangles[self.chosen]]
 
 
 class PartPoints(Points):
@@ -71,9 +82,11 @@ class PartPoints(Points):
         return self._zeros(3) if found is None else found
 
     def matrix(self) -> Array:
+        self.part.is_of_object = True
         return self.part.surface.matrix
 
     def object(self) -> Any:
+        self.part.is_of_object = True
         return self.part.surface.object
 
 
