@@ -45,7 +45,7 @@ def begin(task: Task) -> None:
     tasks.append(task)
     if bpy.app.background:
         task.wait()
-        _take_news()
+        take_news()
     else:
         _start_timer()
 
@@ -71,11 +71,11 @@ def _start_timer() -> None:
 
 
 def _tick() -> float | None:
-    _take_news()
+    take_news()
     return _EVERY if tasks or watch is not None else None
 
 
-def _take_news() -> None:
+def take_news() -> None:
     """By the main thread: never waits."""
     global _last
     for task in [task for task in tasks if task.done]:

@@ -46,17 +46,21 @@ class FinalRender:
             self._tell("Writing the job")
             document = exported.job.document(folder)
             path = document.write(folder / "blender.yaml")
-            if self._engine.test_break():
+            if self.stopped():
                 return
             self._begin(exported.job)
             self._follow(self._run(program, path, document), exported.job)
-            if not self._engine.test_break():
+            if not self.stopped():
                 self._finish(folder / "blender.exr")
         finally:
             if self._result is not None:
                 self._engine.end_result(self._result, cancel=not self._finished)
             if not preferences.keeps_jobs():
                 shutil.rmtree(folder, ignore_errors=True)
+
+    def stopped(self) -> bool:
+        """Whether Esc was pressed."""
+        return bool(self._engine.test_break())
 
     def _export(self) -> Any:
         exported = scene_job.scene_job(self._engine, self._depsgraph, passes.layers_for(self._passes))
@@ -100,7 +104,7 @@ class FinalRender:
         next_time = 0.0
         try:
             while run.running():
-                if self._engine.test_break():
+                if self.stopped():
                     return
                 self._progress(run.progress())
                 began = time.monotonic()

@@ -1,0 +1,48 @@
+"""The add-on of the source tree, switched on, and small scenes for it."""
+
+import pathlib
+import tempfile
+import unittest
+
+import bpy
+import hyades
+
+import hyades_render
+
+ON = False
+
+
+class AddOnTest(unittest.TestCase):
+    """A test with the add-on, a fresh scene of a lit cube, and a folder."""
+
+    def setUp(self) -> None:
+        global ON
+        if bpy.app.background:  # in a window it takes away what runs the tests; one test has one of its own
+            bpy.ops.wm.read_factory_settings()
+        if not ON:
+            hyades_render.register()
+            ON = True
+        scratch = tempfile.TemporaryDirectory()
+        self.addCleanup(scratch.cleanup)
+        self.folder = pathlib.Path(scratch.name)
+        self.scene = bpy.context.scene
+        render = self.scene.render
+        render.engine = "HYADES"
+        render.resolution_x, render.resolution_y = 64, 40
+        self.scene.hyades.samples = 16
+
+    def render(self, name: str = "picture") -> hyades.Layers:
+        """F12: the layers of the file that it writes."""
+        image = self.scene.render.image_settings
+        image.file_format, image.color_depth = "OPEN_EXR_MULTILAYER", "32"
+        image.exr_codec = "ZIP"
+        path = self.folder / f"{name}.exr"
+        self.scene.render.filepath = str(path)
+        bpy.ops.render.render(write_still=True)
+        return hyades.read_exr(path)
+
+    def by_job(self) -> hyades.Layers:
+        """The same scene by the operator that exports it, and the program."""
+        path = self.folder / "exported.yaml"
+        bpy.ops.hyades.export_job(filepath=str(path))
+        return hyades.render(path, self.folder / "exported").layers()

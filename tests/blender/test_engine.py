@@ -1,0 +1,166 @@
+"""F12 in Blender: pictures and passes, borders, Esc, refused scenes, motion blur."""
+
+import pathlib
+import time
+import unittest
+from unittest import mock
+
+import bpy
+import numpy
+from addon import AddOnTest
+
+from hyades_render import complaints, final_render, render_process, runs, scene_job
+from hyades_render.export import Complaint
+
+
+class Pictures(AddOnTest):
+    def test_f12_gives_the_pixels_of_the_job_with_all_passes(self) -> None:
+        layer = bpy.context.view_layer
+        for name in ("z", "normal", "position", "vector", "diffuse_direct", "diffuse_indirect", "environment", "emit"):
+            setattr(layer, f"use_pass_{name}", True)
+        for name in ("glossy_direct", "glossy_indirect", "transmission_direct", "transmission_indirect"):
+            setattr(layer, f"use_pass_{name}", True)
+        layer.use_pass_cryptomatte_object = layer.use_pass_cryptomatte_material = True
+        for name in ("albedo", "volume_direct", "volume_indirect", "variance", "samples"):
+            setattr(layer.hyades, f"use_pass_{name}", True)
+        found = self.render()
+        expected = self.by_job()
+        light = found["ViewLayer.Combined"]
+        numpy.testing.assert_array_equal(light[:, :, :3], expected["beauty"])
+        self.assertTrue((light[:, :, 3] == 1).all())
+        numpy.testing.assert_array_equal(found["ViewLayer.DiffDir"], expected["diffuse_direct"])
+        numpy.testing.assert_array_equal(found["ViewLayer.Albedo"], expected["albedo"])
+        self.assertTrue((found["ViewLayer.Sample Count"] == 16).all())
+        parts = ("DiffDir", "DiffInd", "GlossDir", "GlossInd", "TransDir", "TransInd", "VolumeDir", "VolumeInd")
+        total = sum(found[f"ViewLayer.{name}"] for name in (*parts, "Emit", "Env"))
+        numpy.testing.assert_allclose(total, light[:, :, :3], rtol=1e-5, atol=1e-6)
+        self.geometry(found)
+
+    def geometry(self, found) -> None:
+        """Passes of the first surface are Blender's: z is up."""
+        depth, up = found["ViewLayer.Depth"], found["ViewLayer.Normal"]
+        self.assertTrue((depth[0] == numpy.float32(1e10)).all())
+        self.assertAlmostEqual(float(depth.min()), self.nearest_depth(), delta=0.2)
+        # The cube shows its top and two sides.
+        for axis in ([0, 0, 1], [1, 0, 0], [0, -1, 0]):
+            self.assertGreater(int((up @ numpy.array(axis) > 0.999).sum()), 40, axis)
+        inside = up @ numpy.array([0, 0, 1]) > 0.999
+        numpy.testing.assert_allclose(found["ViewLayer.Position"][inside][:, 2], 1, atol=1e-4)
+        ids = found["ViewLayer.CryptoObject00"]
+        cube = ids[inside]
+        self.assertEqual(len(numpy.unique(cube[:, 0])), 1)
+        numpy.testing.assert_allclose(cube[:, 1], 1)
+        said = {key.split("/")[2]: text for key, text in found.attributes.items() if key.startswith("cryptomatte/")}
+        self.assertIn("Cube", "".join(t for k, t in found.attributes.items() if k.endswith("/manifest")))
+        self.assertEqual(said["conversion"], "uint32_to_float32")
+
+    def nearest_depth(self) -> float:
+        camera = self.scene.camera.matrix_world.inverted()
+        return min(-(camera @ vertex.co).z for vertex in bpy.data.objects["Cube"].data.vertices)
+
+    def test_a_border_is_that_part_of_the_picture(self) -> None:
+        whole = self.render("whole")["ViewLayer.Combined"]
+        render = self.scene.render
+        render.use_border = render.use_crop_to_border = True
+        render.border_min_x, render.border_max_x = 0.26, 0.74  # 16.64 and 47.36 of 64 pixels
+        render.border_min_y, render.border_max_y = 0.11, 0.61  # 4.4 and 24.4 of 40
+        part = self.render("part")["ViewLayer.Combined"]
+        numpy.testing.assert_array_equal(part, whole[40 - 24 : 40 - 4, 16:47])
+
+    def test_what_is_transparent_has_no_background(self) -> None:
+        self.scene.render.film_transparent = True
+        picture = self.render()["ViewLayer.Combined"]
+        self.assertFalse(picture[0].any())
+        self.assertTrue((picture[:, :, 3] == 1).any())
+
+    def test_denoised_pictures_keep_the_noisy_one(self) -> None:
+        self.scene.hyades.denoise = "features"
+        found = self.render()
+        noisy, clean = found["ViewLayer.Noisy Image"], found["ViewLayer.Combined"][:, :, :3]
+        self.assertFalse(numpy.array_equal(noisy, clean))
+        self.assertAlmostEqual(float(noisy.mean()), float(clean.mean()), delta=0.02 * float(noisy.mean()))
+
+    def test_what_moves_is_blurred(self) -> None:
+        cube = bpy.data.objects["Cube"]
+        for frame, place in ((1, -3.0), (5, 3.0)):
+            cube.location.x = place
+            cube.keyframe_insert("location", frame=frame)
+        cube.animation_data.action.fcurves[0].keyframe_points[0].interpolation = "LINEAR"
+        self.scene.frame_set(3)
+        self.scene.render.film_transparent = True
+        sharp = self.render("sharp")["ViewLayer.Combined"][:, :, 3]
+        self.scene.render.use_motion_blur = True
+        blurred = self.render("blurred")["ViewLayer.Combined"][:, :, 3]
+        self.assertGreater(int((blurred % 1 > 0).sum()), 3 * int((sharp % 1 > 0).sum()))
+        self.assertAlmostEqual(float(blurred.sum()), float(sharp.sum()), delta=0.03 * float(sharp.sum()))
+        self.assertEqual((self.scene.frame_current, self.scene.frame_subframe), (3, 0))
+
+
+class Ends(AddOnTest):
+    def test_esc_ends_the_program_and_leaves_nothing(self) -> None:
+        self.scene.hyades.samples = 1 << 20
+        started: list[int] = []
+        begun = render_process.RenderProcess.__init__
+
+        def begin(process, *arguments, **options) -> None:
+            begun(process, *arguments, **options)
+            started.append(process.pid)
+
+        def pressed(_render) -> bool:
+            return bool(started)
+
+        with (
+            mock.patch.object(render_process.RenderProcess, "__init__", begin),
+            mock.patch.object(final_render.FinalRender, "stopped", pressed),
+        ):
+            bpy.ops.render.render()
+        self.assertEqual(len(started), 1)
+        self.assertFalse(pathlib.Path(f"/proc/{started[0]}").exists())
+        self.assertEqual(list(pathlib.Path(bpy.app.tempdir).glob("hyades-*")), [])
+
+    def test_a_refused_scene_is_told_with_its_object(self) -> None:
+        applied = scene_job.apply_settings
+
+        def spoil(job, settings) -> None:
+            applied(job, settings)
+            job.objects["Cube"].material = "nothing"
+
+        with mock.patch.object(scene_job, "apply_settings", spoil):
+            with self.assertRaisesRegex(RuntimeError, "object 'Cube'.*names the material 'nothing'"):
+                bpy.ops.render.render()
+
+    def test_a_missing_program_is_told(self) -> None:
+        with mock.patch.dict("os.environ", {"HYADES": "/nowhere/hyades"}):
+            with self.assertRaisesRegex(RuntimeError, "/nowhere/hyades is no program"):
+                bpy.ops.render.render()
+
+    def test_complaints_are_told_and_kept(self) -> None:
+        exported = final_render.scene_job.scene_job
+
+        def complain(*arguments):
+            result = exported(*arguments)
+            result.complaints.append(Complaint("material 'Floor'", "is not what it seems"))
+            return result
+
+        with mock.patch.object(final_render.scene_job, "scene_job", complain):
+            bpy.ops.render.render()
+        self.assertIn("material 'Floor': is not what it seems", [str(one) for one in complaints.of(self.scene)])
+
+    def test_pictures_come_while_it_is_rendered(self) -> None:
+        """As the window shows them, which is not there in the background."""
+        self.scene.hyades.samples = 64
+        job = self.folder / "job.yaml"
+        bpy.ops.hyades.export_job(filepath=str(job))
+        run = runs.LocalRun(final_render.preferences.find_program(), job, ["--samples", "4096"], None)
+        try:
+            while (picture := run.picture()) is None and run.running():
+                time.sleep(0.01)
+            self.assertEqual(picture.shape, (40, 64, 4))
+            self.assertGreater(float(picture[:, :, :3].max()), 0)
+        finally:
+            run.close()
+        self.assertFalse(run.running())
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,259 @@
+"""Parts of the add-on by themselves: the receiver of pictures, joined frames, names and files of outputs."""
+
+import socket
+import struct
+import unittest
+
+import addon  # noqa: F401  (finds the add-on)
+import bpy
+import hyades
+import numpy
+from addon import AddOnTest
+from hyades import Keys, MeshData, Step, cameras, lights, objects
+
+from hyades_render import animation, joined_frames, moving_transform, scene_job, view_camera
+from hyades_render.viewer import Viewer
+
+
+def create(name: str, width: int, height: int, channels: str) -> bytes:
+    body = b"\x04\x01" + name.encode() + b"\0" + struct.pack("<3i", width, height, len(channels))
+    return packet(body + b"".join(c.encode() + b"\0" for c in channels))
+
+
+def update(name: str, x: int, y: int, values: numpy.ndarray, channels: str) -> bytes:
+    count = len(channels)
+    body = b"\x06\x00" + name.encode() + b"\0" + struct.pack("<i", count)
+    body += b"".join(c.encode() + b"\0" for c in channels)
+    body += struct.pack("<4i", x, y, values.shape[1], values.shape[0])
+    body += struct.pack(f"<{2 * count}q", *range(count), *[count] * count)
+    return packet(body + values.astype("<f4").tobytes())
+
+
+def packet(body: bytes) -> bytes:
+    return struct.pack("<I", len(body) + 4) + body
+
+
+class Receiver(unittest.TestCase):
+    def setUp(self) -> None:
+        self.viewer = Viewer()
+        self.addCleanup(self.viewer.close)
+
+    def send(self, *packets: bytes) -> None:
+        host, port = self.viewer.address.split(":")
+        with socket.create_connection((host, int(port))) as connection:
+            connection.sendall(b"".join(packets))
+            connection.shutdown(socket.SHUT_WR)
+            connection.settimeout(20)
+            try:
+                connection.recv(1)  # until it has read all, and closes
+            except ConnectionResetError:
+                pass  # it has read enough
+
+    def test_parts_come_to_their_places(self) -> None:
+        part = numpy.arange(2 * 3 * 3, dtype=float).reshape(2, 3, 3)
+        self.send(create("a", 8, 6, "RGB"), update("a", 4, 1, part, "RGB"))
+        picture = self.viewer.pixels()
+        self.assertEqual(picture.shape, (6, 8, 4))
+        numpy.testing.assert_array_equal(picture[1:3, 4:7, :3], part)
+        self.assertEqual(picture[:, :, :3].sum(), part.sum())
+        self.assertTrue((picture[:, :, 3] == 1).all())
+        self.assertEqual(self.viewer.changes(), 1)
+
+    def test_the_newest_picture_is_shown(self) -> None:
+        self.send(create("a", 8, 6, "R"), create("b", 2, 2, "R"))
+        self.assertEqual(self.viewer.pixels("R").shape, (2, 2, 1))
+
+    def test_nonsense_does_no_harm(self) -> None:
+        good = update("a", 0, 0, numpy.ones((1, 1, 1)), "R")
+        for wrong in (
+            b"\xff\xff\xff\xff",
+            struct.pack("<I", 4),
+            packet(b"\x06\x00a\0" + struct.pack("<i", 1 << 30)),
+            packet(b"\x04\x01a"),
+            create("a", 1 << 30, 1 << 30, "R"),
+            create("a", -1, 4, "R"),
+            update("a", 7, 5, numpy.ones((4, 4, 1)), "R"),
+            update("a", -1, 0, numpy.ones((1, 1, 1)), "R"),
+            good[:-1],
+        ):
+            self.send(create("a", 8, 6, "R"), wrong)
+            self.assertEqual(self.viewer.pixels("R").shape, (6, 8, 1), wrong[:40])
+            self.assertFalse(self.viewer.pixels("R").any(), wrong[:40])
+        self.send(create("a", 8, 6, "R"), good)
+        self.assertEqual(self.viewer.pixels("R").sum(), 1)
+
+
+class Joined(unittest.TestCase):
+    """Jobs of moments as one."""
+
+    def job(self, x: float, **more) -> hyades.Job:
+        clay = hyades.materials.Lambert(color=[0.5, x / 10, 0.1])
+        job = hyades.Job(materials={"clay": clay}, frames=hyades.Frames(fps=25))
+        matrix = [1, 0, 0, x, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]
+        mesh = MeshData([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]])
+        job.objects["a"] = objects.Mesh(mesh=mesh, material=clay, transform=[Step(matrix=matrix)])
+        job.camera = cameras.Perspective(fov=30 + x)
+        for name, value in more.items():
+            job.objects[name] = value
+        return job
+
+    def joined(self, *jobs: hyades.Job, moments=None):
+        for before, now in zip(jobs, jobs[1:]):
+            joined_frames.share(before, now)
+        return joined_frames.join(moments or range(1, len(jobs) + 1), jobs)
+
+    def test_what_differs_becomes_keys(self) -> None:
+        job, complaints = self.joined(self.job(0), self.job(1), self.job(3))
+        self.assertEqual(complaints, [])
+        self.assertEqual(job.camera.fov, Keys({1: 30, 2: 31, 3: 33}))
+        self.assertEqual(job.materials["clay"].color, Keys({1: [0.5, 0, 0.1], 2: [0.5, 0.1, 0.1], 3: [0.5, 0.3, 0.1]}))
+        self.assertIs(job.objects["a"].material, job.materials["clay"])
+        self.assertIsInstance(job.objects["a"].mesh, MeshData)
+        scale, turn, move = job.objects["a"].transform
+        self.assertEqual(scale.scale, [1, 1, 1])
+        self.assertEqual(turn.rotate.quaternion, [0, 0, 0, 1])
+        self.assertEqual(move.translate, Keys({1: [0, 0, 0], 2: [1, 0, 0], 3: [3, 0, 0]}))
+
+    def test_what_stays_is_said_once(self) -> None:
+        job, complaints = self.joined(self.job(2), self.job(2), self.job(2))
+        self.assertEqual((job.camera.fov, complaints), (32, []))
+        self.assertEqual(len(job.objects["a"].transform), 1)
+
+    def test_what_comes_and_goes_is_tiny_or_dark_meanwhile(self) -> None:
+        lamp = lights.Point(power=50)
+        first, second = self.job(0), self.job(0, late=objects.Sphere(radius=2))
+        first.lights["lamp"] = lamp
+        job, complaints = self.joined(first, second)
+        self.assertEqual(job.objects["late"].transform[0].scale, Keys({1: 1e-6, 2: 1.0}, ease="step"))
+        self.assertEqual(job.lights["lamp"].power, Keys({1: 50, 2: 0.0}, ease="step"))
+        self.assertEqual(complaints, [])
+
+    def test_a_mesh_that_deforms_is_a_file_for_each_frame(self) -> None:
+        jobs = [self.job(0), self.job(0)]
+        jobs[1].objects["a"].mesh.positions[:, 2] += 0.25
+        job, _ = self.joined(*jobs, moments=(4, 4.5))
+        meshes = job.objects["a"].mesh
+        self.assertEqual(sorted(meshes), [4, 5])
+        self.assertEqual(meshes[5].positions[:, 2].tolist(), [0.5, 0.5, 0.5])  # as far as it goes in a whole frame
+
+    def test_what_a_job_cannot_say_is_told(self) -> None:
+        jobs = [self.job(0), self.job(0)]
+        jobs[1].objects["a"].normals = "flat"
+        job, complaints = self.joined(*jobs)
+        self.assertEqual([complaint.where for complaint in complaints], ["object 'a' > normals"])
+        self.assertEqual(job.objects["a"].normals, "file")
+
+    def test_every_matrix_comes_back(self) -> None:
+        random = numpy.random.default_rng(7)
+        for kind in ("any", "upright", "mirrored"):
+            matrices = []
+            for _ in range(2):
+                linear = random.normal(size=(3, 3))
+                if kind != "any":
+                    turn, _ = numpy.linalg.qr(linear)
+                    size = random.uniform(0.1, 3, 3) * ([-1, 1, 1] if kind == "mirrored" else 1)
+                    linear = turn @ numpy.diag(size)
+                matrix = numpy.eye(4)
+                matrix[:3, :3], matrix[:3, 3] = linear, random.normal(size=3)
+                matrices.append(matrix)
+            given = [[Step(matrix=[float(x) for x in matrix.ravel()])] for matrix in matrices]
+            steps = moving_transform.joined(given, lambda values: Keys(dict(enumerate(values))))
+            for at, matrix in enumerate(matrices):
+                whole = numpy.eye(4)
+                for step in steps:
+                    whole = self.as_matrix(step, at) @ whole
+                numpy.testing.assert_allclose(whole, matrix, atol=2e-5, err_msg=kind)
+
+    def as_matrix(self, step: Step, at: int) -> numpy.ndarray:
+        def value(keys):
+            return keys.keys[at] if isinstance(keys, Keys) else keys
+
+        matrix = numpy.eye(4)
+        if step.scale is not None:
+            matrix[:3, :3] = numpy.diag(value(step.scale))
+        elif step.translate is not None:
+            matrix[:3, 3] = value(step.translate)
+        else:
+            x, y, z, w = value(step.rotate.quaternion)
+            matrix[:3, :3] = [
+                [1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)],
+                [2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)],
+                [2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)],
+            ]
+        return matrix
+
+
+class Scenes(AddOnTest):
+    def test_settings_are_those_of_the_job(self) -> None:
+        defaults = hyades.Sampling(), hyades.integrators.Path(), hyades.integrators.Mlt()
+        for name in ("samples", "seed", "noise", "min_samples"):
+            self.assertEqual(type(self.scene.hyades).bl_rna.properties[name].default, getattr(defaults[0], name), name)
+        for name in ("max_depth", "roulette_depth", "clamp"):
+            self.assertEqual(getattr(self.scene.hyades, name), getattr(defaults[1], name), name)
+        self.assertAlmostEqual(self.scene.hyades.large_step, defaults[2].large_step)
+        settings, job = self.scene.hyades, hyades.Job()
+        settings.integrator, settings.noise, settings.denoise = "mlt", 0.05, "oidn"
+        scene_job.apply_settings(job, settings)
+        self.assertEqual((job.integrator.TYPE, job.denoise, job.sampling.min_samples), ("mlt", "oidn", 16))
+
+    def test_files_are_called_as_the_output_says(self) -> None:
+        render = self.scene.render
+        for path, kind, numbered, expected in (
+            ("/tmp/", "PNG", True, "shot.####.png"),
+            ("/tmp/", "PNG", False, "shot.png"),
+            ("/tmp/a_", "PNG", True, "a_####.png"),
+            ("/tmp/a_##", "JPEG", True, "a_##.jpg"),
+            ("/tmp/film.mp4", "FFMPEG", True, "film.mp4"),
+            ("/tmp/a.exr", "OPEN_EXR", False, "a.exr"),
+            ("/tmp/x", "TIFF", True, "x####.tif"),
+        ):
+            render.filepath = path
+            render.image_settings.file_format = kind
+            frames = range(1, 3) if numbered else None
+            job = animation.job_of(self.scene, frames=frames, name="shot").job
+            self.assertEqual([output.file for output in job.outputs], [expected])
+        render.image_settings.file_format = "TARGA"
+        complaints = animation.job_of(self.scene, frames=None, name="shot").complaints
+        self.assertIn("output: files of type TARGA are not written; PNG is", [str(one) for one in complaints])
+
+    def test_a_still_scene_is_told_from_one_that_moves(self) -> None:
+        self.assertIsNone(animation.moving_frames(self.scene))
+        # Blender adds up normals by several threads, in another order each time.
+        bpy.ops.mesh.primitive_uv_sphere_add(segments=128, ring_count=64)
+        bpy.ops.object.shade_smooth()
+        self.assertIsNone(animation.moving_frames(self.scene))
+        cube = bpy.data.objects["Cube"]
+        cube.keyframe_insert("location", frame=1)
+        cube.location.z = 1
+        cube.keyframe_insert("location", frame=250)
+        self.assertEqual(animation.moving_frames(self.scene), range(1, 251))
+
+    def test_names_are_those_that_jobs_take(self) -> None:
+        for text, name in (("Küche 1", "K_che 1"), ("  ", "blender"), ("-a/b", "a_b"), ("x" * 200, "x" * 100)):
+            self.assertEqual(scene_job.job_name(text), name)
+            hyades.Job(name=name).yaml()
+
+    def test_the_viewport_sees_what_its_matrices_say(self) -> None:
+        """A point of the job's world lands on the film where Blender's matrices put it."""
+        from mathutils import Matrix, Vector
+
+        view = self.scene.camera.matrix_world.inverted()
+        window = Matrix(((1.9, 0, 0.2, 0), (0, 3.1, -0.1, 0), (0, 0, -1, -0.2), (0, 0, -1, 0)))
+        camera = view_camera.camera_of(view, window, 5.0)
+        point = Vector((0.3, -0.4, 0.7, 1))
+        clip = window @ (view @ point)
+        at = numpy.array(camera.look_from)
+        forward = numpy.array(camera.look_at) - at
+        up = numpy.array(camera.up)
+        right = numpy.cross(forward, up)
+        ray = numpy.array([point.x, point.z, -point.y]) - at
+        depth, tangent = ray @ forward, numpy.tan(numpy.radians(camera.fov / 2))
+        aspect = 3.1 / 1.9
+        # docs/job.md: with a shift of 0.5 what lies straight ahead is at the edge of the picture.
+        x = ray @ right / (depth * tangent * aspect) - 2 * camera.shift[0]
+        y = ray @ up / (depth * tangent) - 2 * camera.shift[1]
+        numpy.testing.assert_allclose([x, y], [clip.x / clip.w, clip.y / clip.w], atol=1e-5)
+
+
+if __name__ == "__main__":
+    unittest.main()
