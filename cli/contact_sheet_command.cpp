@@ -60,10 +60,10 @@ int contact_sheet_command(int argc, char** argv) {
   ContactSheetOptions options;
   app.add_option("pictures", options.pictures, "PNG or JPEG files")->required();
   app.add_option("-o,--output", options.output, "PNG to write")->required()->type_name("FILE");
-  app.add_option("--columns", options.columns, "pictures in a row")
+  app.add_option("--columns", options.columns, "pictures in a row, about")
       ->check(in_range(1, 1000))
       ->capture_default_str();
-  app.add_option("--width", options.width, "of a picture, in pixels")
+  app.add_option("--width", options.width, "of a picture, in pixels, about")
       ->check(in_range(16, 8192))
       ->capture_default_str();
   app.footer(

@@ -3,12 +3,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <utility>
 #include <vector>
 
 #include "core/base/color.h"
+#include "core/finish/sheet_rows.h"
 #include "core/finish/small_font.h"
 
 namespace hyades::core {
@@ -17,13 +19,13 @@ namespace {
 constexpr int kGap = 8;
 constexpr int kLetterScale = 2;
 constexpr int kLabel = (kGlyphHeight + 4) * kLetterScale;
+constexpr int64_t kMostPixels = 1'000'000'000;
 constexpr float kPaper = 0.10F;
 constexpr float kInk = 0.72F;
 
-int height_at(const Image& picture, int width) {
-  return std::max(
-      1, static_cast<int>((static_cast<int64_t>(picture.height) * width + picture.width / 2) /
-                          picture.width));
+Error too_large(int64_t width, int64_t height) {
+  return Error{fmt::format("the sheet would have {} x {} pixels, expected at most 1e9 in all",
+                           width, height)};
 }
 
 /// The mean of channel `c` over what one pixel of the scaled picture covers.
@@ -42,14 +44,17 @@ float covered_mean(const Image& picture, int c, int x, int y, int width, int hei
   return sum / static_cast<float>((x1 - x0) * (y1 - y0));
 }
 
-void paste(Image& sheet, const Image& picture, const int channels[3], int left, int top,
-           int width) {
-  const int height = height_at(picture, width);
-  for (int y = 0; y < height; ++y) {
-    for (int x = 0; x < width; ++x) {
+/// Where a picture comes to stand on the sheet, in pixels.
+struct Place {
+  int left = 0, top = 0, width = 1, height = 1;
+};
+
+void paste(Image& sheet, const Image& picture, const int channels[3], const Place& at) {
+  for (int y = 0; y < at.height; ++y) {
+    for (int x = 0; x < at.width; ++x) {
       for (int c = 0; c < 3; ++c) {
-        const float mean = covered_mean(picture, channels[c], x, y, width, height);
-        sheet.at(left + x, top + y, c) = srgb_encode(std::clamp(mean, 0.0F, 1.0F));
+        const float mean = covered_mean(picture, channels[c], x, y, at.width, at.height);
+        sheet.at(at.left + x, at.top + y, c) = srgb_encode(std::clamp(mean, 0.0F, 1.0F));
       }
     }
   }
@@ -72,26 +77,48 @@ void write(Image& sheet, const std::string& text, int left, int top, int width) 
   }
 }
 
+double aspect_of(const Image& picture) {
+  return static_cast<double>(picture.width) / picture.height;
+}
+
+/// The places of all pictures, row by row, on a sheet that is `width` pixels wide within its
+/// margins.
+std::vector<Place> places_of(std::span<const ContactPrint> prints, int columns, int width) {
+  std::vector<double> aspects;
+  for (const ContactPrint& print : prints) aspects.push_back(aspect_of(print.picture));
+  std::vector<Place> places;
+  int64_t top = kGap;
+  for (const SheetRow& row : sheet_rows(aspects, columns, width, kGap)) {
+    const int height = std::max(1, static_cast<int>(std::lround(row.height)));
+    double edge = kGap;
+    for (size_t i = row.first; i < row.end; ++i) {
+      const double next = edge + aspects[i] * row.height;
+      // Edges are rounded, not widths, so that all rows end at the same place.
+      const int left = static_cast<int>(std::lround(edge));
+      const int right = static_cast<int>(std::lround(next));
+      places.push_back({left, static_cast<int>(top), std::max(1, right - left), height});
+      edge = next + kGap;
+    }
+    top += height + kLabel + kGap;
+    if (top > kMostPixels) break;
+  }
+  return places;
+}
+
 }  // namespace
 
 Result<Image> contact_sheet(std::span<const ContactPrint> prints, int columns, int width) {
   if (prints.empty() || columns < 1 || width < 1)
     return Error{"there is nothing to put on a sheet"};
   columns = std::min(columns, static_cast<int>(prints.size()));
-  std::vector<int> tops;  // of rows; at the end, the sheet's height
-  int64_t top = kGap;
-  for (size_t i = 0; i < prints.size(); i += static_cast<size_t>(columns)) {
-    tops.push_back(static_cast<int>(top));
-    int tallest = 0;
-    for (size_t k = i; k < std::min(i + static_cast<size_t>(columns), prints.size()); ++k)
-      tallest = std::max(tallest, height_at(prints[k].picture, width));
-    top += tallest + kLabel + kGap;
-  }
   const int64_t sheet_width = int64_t{columns} * (width + kGap) + kGap;
-  if (sheet_width * top > 1'000'000'000)
-    return Error{fmt::format("the sheet would have {} x {} pixels, expected at most 1e9 in all",
-                             sheet_width, top)};
-  Image sheet = make_image(static_cast<int>(sheet_width), static_cast<int>(top), {"R", "G", "B"});
+  if (sheet_width > kMostPixels) return too_large(sheet_width, 1);
+  const auto places = places_of(prints, columns, static_cast<int>(sheet_width) - 2 * kGap);
+  const int64_t sheet_height = int64_t{places.back().top} + places.back().height + kLabel + kGap;
+  if (places.size() < prints.size() || sheet_width * sheet_height > kMostPixels)
+    return too_large(sheet_width, sheet_height);
+  Image sheet =
+      make_image(static_cast<int>(sheet_width), static_cast<int>(sheet_height), {"R", "G", "B"});
   std::fill(sheet.data.begin(), sheet.data.end(), kPaper);
   for (size_t i = 0; i < prints.size(); ++i) {
     const ContactPrint& print = prints[i];
@@ -99,11 +126,9 @@ Result<Image> contact_sheet(std::span<const ContactPrint> prints, int columns, i
                              print.picture.find_channel("B")};
     if (std::min({channels[0], channels[1], channels[2]}) < 0)
       return Error{print.name + ": it has no channels R, G, B"};
-    const int left = kGap + static_cast<int>(i % static_cast<size_t>(columns)) * (width + kGap);
-    const int row_top = tops[i / static_cast<size_t>(columns)];
-    paste(sheet, print.picture, channels, left, row_top, width);
-    write(sheet, print.name, left, row_top + height_at(print.picture, width) + 2 * kLetterScale,
-          width);
+    const Place& place = places[i];
+    paste(sheet, print.picture, channels, place);
+    write(sheet, print.name, place.left, place.top + place.height + 2 * kLetterScale, place.width);
   }
   return sheet;
 }

@@ -19,21 +19,27 @@ ContactPrint print(const std::string& name, int width, int height, const Rgb& co
   return out;
 }
 
-TEST(ContactSheet, ScalesPicturesAndPutsThemIntoRows) {
-  const std::vector<ContactPrint> prints = {print("one", 200, 100, {1.0F, 0.0F, 0.0F}),
-                                            print("two", 100, 100, {0.0F, 0.5F, 0.0F}),
-                                            print("three", 50, 25, {0.0F, 0.0F, 1.0F})};
+TEST(ContactSheet, PicturesOfARowAreEquallyHighAndFillIt) {
+  const std::vector<ContactPrint> prints = {print("wide", 200, 100, {1.0F, 0.0F, 0.0F}),
+                                            print("square", 100, 100, {0.0F, 0.5F, 0.0F}),
+                                            print("wide too", 50, 25, {0.0F, 0.0F, 1.0F})};
   const auto sheet = contact_sheet(prints, 2, 100);
   ASSERT_TRUE(sheet) << sheet.error().message;
   EXPECT_EQ(sheet->width, 8 + 2 * 108);
-  EXPECT_EQ(sheet->at(58, 33, 0), 1.0F);
-  EXPECT_NEAR(sheet->at(166, 100, 1), srgb_encode(0.5F), 1e-5F) << "as high as it is wide";
-  EXPECT_LT(sheet->at(58, 100, 0), 0.2F) << "half as high as wide";
-  // The second row begins below the highest picture of the first and its name.
-  const int second_row = 8 + 100 + 22 + 8;
-  EXPECT_EQ(sheet->at(58, second_row + 25, 2), 1.0F);
-  EXPECT_LT(sheet->at(166, second_row + 25, 2), 0.2F);
-  EXPECT_EQ(sheet->height, second_row + 50 + 22 + 8);
+  // Two to one and a square in 208 pixels less the gap of 8: 133.3 and 66.7 wide, 66.7 high.
+  EXPECT_EQ(sheet->at(8, 8, 0), 1.0F);
+  EXPECT_EQ(sheet->at(140, 74, 0), 1.0F);
+  EXPECT_LT(sheet->at(145, 40, 0), 0.2F) << "the gap";
+  EXPECT_NEAR(sheet->at(215, 74, 1), srgb_encode(0.5F), 1e-5F) << "the row ends at the margin";
+  EXPECT_LT(sheet->at(216, 40, 1), 0.2F) << "the margin";
+  EXPECT_LT(sheet->at(140, 75, 0), 0.2F) << "below the row";
+  // The third stands alone in a row of the height that was wanted, two pictures a row: 200 pixels
+  // for two of the mean shape, 5 to 3.
+  const int second_row = 8 + 67 + 22 + 8;
+  EXPECT_EQ(sheet->at(8, second_row, 2), 1.0F);
+  EXPECT_EQ(sheet->at(127, second_row + 59, 2), 1.0F);
+  EXPECT_LT(sheet->at(128, second_row, 2), 0.2F) << "it does not grow to fill its row";
+  EXPECT_EQ(sheet->height, second_row + 60 + 22 + 8);
 }
 
 TEST(ContactSheet, NamesArePrinted) {
