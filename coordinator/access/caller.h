@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <string>
 
+#include "farm/byte_budget.h"
 #include "farm/token_term.h"
 #include "hyades/v1/admin.pb.h"
 
@@ -29,5 +30,10 @@ struct Caller {
   uint32_t machines = 0;  ///< StoredToken::machines
   std::string session{};  ///< of a browser that has signed in: names it (Authority::end_session)
 };
+
+/// For whom bytes are counted that the caller has held: the name of his token, and, where that is
+/// one machine's own, the machine; where he has none that part of the network that he comes from
+/// (neighbourhood_of()).
+farm::ByteBudget::Owner owner_of(const Caller& caller);
 
 }  // namespace hyades::coordinator

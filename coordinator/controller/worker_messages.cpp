@@ -170,7 +170,8 @@ struct WorkerSessions::Film {
   v1::UnitResult result;
   ExpectedFilm expected;
   TimePoint came;
-  std::string owner;  ///< who has let the worker in
+  std::string owner;                                ///< who has let the worker in
+  std::optional<farm::ByteBudget::Share> packed{};  ///< until it is unpacked
 };
 
 /// Decides by what is known without unpacking the film, and has it unpacked.
@@ -210,25 +211,20 @@ std::optional<ResultRefusal> WorkerSessions::have_unpacked(const std::shared_ptr
                                                            farm::ThreadPool& pool) {
   const StateLock lock(context_.mutex);
   if (auto later = not_now(film->result)) return later;
-  const uint64_t bytes = film->result.film().size();
-  const uint64_t own = packed_of_[film->owner] + bytes;
-  if (packed_ + bytes > kMostPacked || own > kMostPacked / 2 ||
-      !pool.submit([this, film] { unpack(film); }, film->owner)) {
-    return too_many_wait();
+  film->packed.emplace(packed_, farm::ByteBudget::Owner{film->owner});
+  if (film->packed->try_hold(film->result.film().size()) &&
+      pool.submit([this, film] { unpack(film); }, film->owner)) {
+    return std::nullopt;
   }
-  packed_ += bytes;
-  packed_of_[film->owner] = own;
-  return std::nullopt;
+  film->packed.reset();
+  return too_many_wait();
 }
 
 void WorkerSessions::unpack(const std::shared_ptr<Film>& film) {
   const v1::UnitResult& result = film->result;
   std::variant<Delivery, ResultRefusal> checked = check_result(result, film->expected);
+  film->packed.reset();
   Turn turn(dispatcher_);
-  packed_ -= result.film().size();
-  const auto own = packed_of_.find(film->owner);
-  own->second -= result.film().size();
-  if (own->second == 0) packed_of_.erase(own);
   WorkerSession* session = workers_.find(film->worker, film->link.get());
   if (session == nullptr) return;
   std::optional<ResultRefusal> refusal;

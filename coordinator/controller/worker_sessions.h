@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstdint>
-#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -9,6 +8,7 @@
 
 #include "coordinator/controller/worker_table.h"
 #include "core/base/parallel.h"
+#include "farm/byte_budget.h"
 #include "farm/thread_pool.h"
 #include "farm/token_term.h"
 
@@ -123,9 +123,8 @@ class WorkerSessions {
   TimePoint adopting_until_ HYADES_GUARDED_BY(state_lock);
   TimePoint adopting_at_most_ HYADES_GUARDED_BY(state_lock);
 
-  /// Bytes of films that wait to be unpacked, by who has let their workers in, and of all.
-  std::map<std::string, uint64_t> packed_of_ HYADES_GUARDED_BY(state_lock);
-  uint64_t packed_ HYADES_GUARDED_BY(state_lock) = 0;
+  /// Of films that wait to be unpacked, for who has let their workers in.
+  farm::ByteBudget packed_{kMostPacked, kMostPacked / 2};
 
   // Last, so that they end first.
   farm::ThreadPool unpackers_;  ///< of films that take little memory

@@ -37,7 +37,7 @@ grpc::Status Admission::admit(const grpc::CallbackServerContext& context, const 
     unknown_(caller.address);
     return known;
   }
-  known_(caller.address, caller.token_id);
+  known_(caller);
   uint32_t protocol = 0;
   const auto spoken = metadata.find(farm::kProtocolKey);
   if (spoken != metadata.end()) {

@@ -18,9 +18,9 @@ namespace hyades::coordinator {
 /// token's role may do what it asks for.
 class Admission {
  public:
-  /// Hears of an address (address_text()) from which a call has shown a token that is one (its id),
-  /// or, where none is asked for, could do without (empty).
-  using Known = std::function<void(const std::string& address, const std::string& token_id)>;
+  /// Hears of a caller (Caller::address is address_text()) who has shown a token that is one, or,
+  /// where none is asked for, could do without.
+  using Known = std::function<void(const Caller& caller)>;
 
   /// Hears of an address from which a call has shown no token that is one.
   using Unknown = std::function<void(const std::string& address)>;

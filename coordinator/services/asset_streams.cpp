@@ -8,7 +8,7 @@
 
 #include <fmt/format.h>
 
-#include "coordinator/access/byte_budget.h"
+#include "coordinator/access/caller.h"
 #include "coordinator/controller/controller.h"
 #include "coordinator/operations/file_transfer.h"
 #include "coordinator/operations/ownership.h"
@@ -44,7 +44,7 @@ class UploadStream final : public grpc::ServerReadReactor<grpc::ByteBuffer> {
   }
 
   void OnReadDone(bool ok) override {
-    if (!pool_.submit([this, ok] { take_part(ok); }, ByteBudget::owner_of(caller_).name)) {
+    if (!pool_.submit([this, ok] { take_part(ok); }, owner_of(caller_).name)) {
       Finish(crowded());
     }
   }

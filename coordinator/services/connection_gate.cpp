@@ -63,6 +63,11 @@ bool watch(const core::Descriptor& poll, int operation, const core::Descriptor& 
   return ::epoll_ctl(poll.get(), operation, file.get(), &event) == 0;
 }
 
+/// What a machine's own token counts as, besides the one that it joined with; empty: it is none.
+std::string machine_key(const std::string& token_id, const std::string& machine) {
+  return machine.empty() ? std::string() : token_id + '\n' + machine;
+}
+
 bool is_out_of_files(int error) {
   return error == EMFILE || error == ENFILE || error == ENOBUFS || error == ENOMEM;
 }
@@ -111,7 +116,8 @@ void ConnectionGate::close() {
   listening_.sockets.clear();
 }
 
-void ConnectionGate::mark_known(const std::string& address, const std::string& token_id) {
+void ConnectionGate::mark_known(const std::string& address, const std::string& token_id,
+                                const std::string& machine) {
   const core::MutexLock lock(mutex_);
   const auto found = by_address_.find(address);
   if (found == by_address_.end()) return;
@@ -120,12 +126,15 @@ void ConnectionGate::mark_known(const std::string& address, const std::string& t
   connection.calls = 0;
   if (connection.known) return;
   strangers_.know(id, std::chrono::steady_clock::now());
-  if (has_place_for(token_id)) {
+  const std::string key = machine_key(token_id, machine);
+  if (has_place_for(token_id, key)) {
     connection.known = true;
     connection.token_id = token_id;
+    connection.machine = key;
     lift_bound(connection.socket);
     ++known_;
     ++known_by_[token_id];
+    if (!key.empty()) ++known_by_[key];
   } else {
     drop(id);
   }
@@ -165,26 +174,39 @@ void ConnectionGate::note_over(const std::string& address, bool broken) {
   if (!connection.broken->take(now)) shut_out(id);
 }
 
-/// Ends the connection of one who costs too much, and lets his token rest.
+/// Ends the connection of one who costs too much, and lets what he came in by rest: of all machines
+/// that joined with a token only himself.
 void ConnectionGate::shut_out(Id id) {
   const Time now = std::chrono::steady_clock::now();
-  const std::string token_id = connections_.at(id).token_id;
+  const Connection& connection = connections_.at(id);
+  const std::string& whose =
+      connection.machine.empty() ? connection.token_id : connection.machine;
   std::erase_if(resting_, [&](const auto& other) { return other.second <= now; });
-  if (!token_id.empty()) resting_[token_id] = now + limits_.broken_rest;
+  if (!whose.empty()) resting_[whose] = now + limits_.broken_rest;
   drop(id);
   wake();
 }
 
-bool ConnectionGate::rests(const std::string& token_id) const {
-  const auto until = resting_.find(token_id);
+bool ConnectionGate::rests(const std::string& whose) const {
+  const auto until = resting_.find(whose);
   return until != resting_.end() && std::chrono::steady_clock::now() < until->second;
 }
 
-bool ConnectionGate::has_place_for(const std::string& token_id) const {
+size_t ConnectionGate::count_of(const std::string& whose) const {
+  const auto own = known_by_.find(whose);
+  return own == known_by_.end() ? 0 : own->second;
+}
+
+void ConnectionGate::forget_one_of(const std::string& whose) {
+  const auto own = known_by_.find(whose);
+  if (--own->second == 0) known_by_.erase(own);
+}
+
+bool ConnectionGate::has_place_for(const std::string& token_id, const std::string& machine) const {
   const size_t free = limits_.known - known_;
-  const auto own = known_by_.find(token_id);
-  return free > 0 && !rests(token_id) &&
-         (token_id.empty() || own == known_by_.end() || own->second < free);
+  if (free == 0 || rests(token_id) || rests(machine)) return false;
+  if (token_id.empty()) return true;
+  return count_of(token_id) < free && (machine.empty() || count_of(machine) < (free + 3) / 4);
 }
 
 ConnectionGate::Count ConnectionGate::count() const {
@@ -324,8 +346,8 @@ void ConnectionGate::drop(Id id) {
   Connection& connection = found->second;
   if (connection.known) {
     --known_;
-    const auto same = known_by_.find(connection.token_id);
-    if (--same->second == 0) known_by_.erase(same);
+    forget_one_of(connection.token_id);
+    if (!connection.machine.empty()) forget_one_of(connection.machine);
   }
   strangers_.go(id, std::chrono::steady_clock::now());
   const auto address = by_address_.find(connection.address);

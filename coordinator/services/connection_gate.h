@@ -40,13 +40,14 @@ class ConnectionGate {
     /// Calls that one who is known may break off at once, and how many more each second; and how
     /// many of his may be in work. gRPC takes any number at once that are broken off, and keeps
     /// twenty kilobytes of each until it comes to it. Who has more goes, and nobody comes in by the
-    /// token for a while.
+    /// token for a while; where that is one machine's own, by that.
     double broken_calls = 100;
     double broken_calls_per_second = 5;
     int open_calls = 400;
     std::chrono::seconds broken_rest{10};
     /// Connections of those that are known; also bounded by the files that may be open. With one
-    /// token as many as are free at most, so half of them, and then who has another comes in.
+    /// token as many as are free at most, so half of them, and then who has another comes in; with
+    /// one machine's own a quarter of that.
     size_t known = 20'000;
     /// How often it is looked whether memory can be given back to the system.
     std::chrono::milliseconds trim_every{15'000};
@@ -65,8 +66,9 @@ class ConnectionGate {
   void close();
 
   /// Whoever called from there, as address_text() has it, has shown the token of this id, or needs
-  /// none (empty). Thread-safe.
-  void mark_known(const std::string& address, const std::string& token_id = {});
+  /// none (empty); `machine`: that machine's own, which it was given for the token. Thread-safe.
+  void mark_known(const std::string& address, const std::string& token_id = {},
+                  const std::string& machine = {});
 
   /// Whoever called from there has shown no token that is one. Thread-safe.
   void mark_unknown(const std::string& address);
@@ -92,6 +94,7 @@ class ConnectionGate {
     std::string address;
     bool known = false;
     std::string token_id{};               ///< by which it became known; empty: none
+    std::string machine{};                ///< machine_key() of whose own that was; empty: nobody's
     std::optional<uint32_t> beginning{};  ///< of what it sends (take_beginning())
     uint32_t bound = 0;                   ///< of what is let in of a stranger
     int calls = 0;                        ///< in a row without a token that is one
@@ -108,8 +111,11 @@ class ConnectionGate {
   void advance(Time now, std::vector<int>& entering) HYADES_REQUIRES(mutex_);
   int enter(Id id) HYADES_REQUIRES(mutex_);
   void drop(Id id) HYADES_REQUIRES(mutex_);
-  bool has_place_for(const std::string& token_id) const HYADES_REQUIRES(mutex_);
-  bool rests(const std::string& token_id) const HYADES_REQUIRES(mutex_);
+  bool has_place_for(const std::string& token_id, const std::string& machine) const
+      HYADES_REQUIRES(mutex_);
+  size_t count_of(const std::string& whose) const HYADES_REQUIRES(mutex_);
+  void forget_one_of(const std::string& whose) HYADES_REQUIRES(mutex_);
+  bool rests(const std::string& whose) const HYADES_REQUIRES(mutex_);
   void shut_out(Id id) HYADES_REQUIRES(mutex_);
   void look_at_strangers(Time now) HYADES_REQUIRES(mutex_);
   void wake() const;
@@ -128,8 +134,10 @@ class ConnectionGate {
   Time look_again_ HYADES_GUARDED_BY(mutex_);  ///< at strangers
   Time trim_again_ HYADES_GUARDED_BY(mutex_);  ///< memory
   size_t known_ HYADES_GUARDED_BY(mutex_) = 0;
-  std::unordered_map<std::string, size_t> known_by_ HYADES_GUARDED_BY(mutex_);  ///< by token
-  std::unordered_map<std::string, Time> resting_ HYADES_GUARDED_BY(mutex_);  ///< tokens, until when
+  std::unordered_map<std::string, size_t> known_by_
+      HYADES_GUARDED_BY(mutex_);  ///< by token, and by machine_key()
+  std::unordered_map<std::string, Time> resting_
+      HYADES_GUARDED_BY(mutex_);  ///< tokens and machines, until when
   Id next_id_ HYADES_GUARDED_BY(mutex_);
   /// No file could be opened: when it is tried again.
   std::optional<Time> accept_again_ HYADES_GUARDED_BY(mutex_);

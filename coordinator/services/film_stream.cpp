@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "coordinator/access/byte_budget.h"
+#include "coordinator/access/caller.h"
 #include "coordinator/controller/controller.h"
 #include "coordinator/services/file_stream.h"
 #include "coordinator/services/service.h"
@@ -124,7 +124,7 @@ void add_film_stream(Service& service) {
       [&service, films = std::make_shared<OpenFilms>()](
           Service::Context& context, const Caller& caller, v1::FilmRequest&& request,
           grpc::Status& refused) -> OutgoingStream* {
-        const std::string owner = ByteBudget::owner_of(caller).name;
+        const std::string owner = owner_of(caller).name;
         if (films->open(owner)) {
           return new FilmStream(context, service.executors().files, service.backend().controller,
                                 std::move(request), films, owner);

@@ -10,7 +10,7 @@
 #include <grpcpp/support/byte_buffer.h>
 #include <grpcpp/support/status.h>
 
-#include "coordinator/access/byte_budget.h"
+#include "coordinator/access/caller.h"
 #include "coordinator/operations/executors.h"
 #include "coordinator/services/admission.h"
 #include "core/base/mutex.h"
@@ -77,7 +77,7 @@ class Producer : public OutgoingStream {
   }
 
   void guard(const Admission& admission, const Caller& caller) override {
-    owner_ = ByteBudget::owner_of(caller).name;
+    owner_ = owner_of(caller).name;
     visit_ = admission.visit(
         caller, [handle = handle_](const grpc::Status& why) { handle->send_away(why); });
   }

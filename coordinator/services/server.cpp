@@ -38,8 +38,8 @@ struct Server::Parts {
       : gate(options.gate),
         admission(
             authority, workers_show,
-            [this](const std::string& address, const std::string& token_id) {
-              gate.mark_known(address, token_id);
+            [this](const Caller& caller) {
+              gate.mark_known(caller.address, caller.token_id, caller.worker);
             },
             [this](const std::string& address) { gate.mark_unknown(address); }),
         waiting(options.waiting, options.waiting_of_one),
@@ -54,7 +54,7 @@ struct Server::Parts {
   ConnectionGate gate;
   Admission admission;
   Executors executors;
-  ByteBudget waiting;
+  farm::ByteBudget waiting;
   Service service;
   std::unique_ptr<grpc::experimental::ExternalConnectionAcceptor> acceptor;
   std::unique_ptr<grpc::Server> server;

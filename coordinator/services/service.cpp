@@ -12,12 +12,13 @@
 #include <fmt/format.h>
 #include <grpcpp/impl/codegen/server_callback_handlers.h>
 
-#include "coordinator/access/byte_budget.h"
+#include "coordinator/access/caller.h"
 #include "coordinator/controller/owner_connections.h"
 #include "coordinator/operations/ownership.h"
 #include "coordinator/services/part_count.h"
 #include "coordinator/services/request_call.h"
 #include "core/base/mutex.h"
+#include "farm/byte_budget.h"
 
 namespace hyades::coordinator {
 namespace {
@@ -42,7 +43,7 @@ class Service::UnaryCall final : public RequestCall {
         work_(std::make_shared<Work>()) {
     grpc::Status admitted = service.admission_.check(context, operation.rule, work_->caller);
     if (admitted.ok()) {
-      waiting_.emplace(service.waiting_, ByteBudget::owner_of(work_->caller));
+      waiting_.emplace(service.waiting_, owner_of(work_->caller));
       if (!waiting_->try_hold(kCallBytes)) admitted = too_much_unread();
     }
     if (admitted.ok()) {
@@ -77,7 +78,7 @@ class Service::UnaryCall final : public RequestCall {
       Finish(status);
     } else if (executor == nullptr) {
       proceed();
-    } else if (!executor->submit([this] { proceed(); }, ByteBudget::owner_of(work_->caller).name)) {
+    } else if (!executor->submit([this] { proceed(); }, owner_of(work_->caller).name)) {
       Finish(crowded());
     }
   }
@@ -131,7 +132,8 @@ class Service::UnaryCall final : public RequestCall {
   const Operation& operation_;
   std::shared_ptr<Work> work_;
   Bytes said_;
-  std::optional<ByteBudget::Share> waiting_;  ///< of the call and its answer, until it was read
+  std::optional<farm::ByteBudget::Share>
+      waiting_;  ///< of the call and its answer, until it was read
 };
 
 /// A call that a stream answers.
@@ -140,7 +142,7 @@ class Service::StreamCall final : public RequestCall, public OutgoingCall {
   StreamCall(Service& service, const Rule& rule, const MakeRawStream& make, Context& context)
       : RequestCall(context), admission_(service.admission_), make_(make), context_(context) {
     grpc::Status refused = admission_.check(context, rule, caller_);
-    counted_.emplace(service.waiting_, ByteBudget::owner_of(caller_));
+    counted_.emplace(service.waiting_, owner_of(caller_));
     if (refused.ok() && !counted_->try_hold(kCallBytes)) refused = too_much_unread();
     if (refused.ok()) entry_ = count_connection(service.at_.controller, caller_, refused);
     if (refused.ok()) {
@@ -189,7 +191,7 @@ class Service::StreamCall final : public RequestCall, public OutgoingCall {
   const MakeRawStream& make_;
   Context& context_;
   Caller caller_;
-  std::optional<ByteBudget::Share> counted_;        ///< while a message is on its way
+  std::optional<farm::ByteBudget::Share> counted_;  ///< while a message is on its way
   std::unique_ptr<OwnerConnections::Entry> entry_;  ///< among the owner's
   OutgoingStream* stream_ = nullptr;
   core::Mutex mutex_;
@@ -198,7 +200,7 @@ class Service::StreamCall final : public RequestCall, public OutgoingCall {
 };
 
 Service::Service(Backend at, const Admission& admission, Executors& executors,
-                 std::chrono::milliseconds patience, ByteBudget& waiting)
+                 std::chrono::milliseconds patience, farm::ByteBudget& waiting)
     : at_(at),
       admission_(admission),
       executors_(executors),

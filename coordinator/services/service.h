@@ -11,10 +11,10 @@
 #include <grpcpp/server_context.h>
 #include <grpcpp/support/server_callback.h>
 
-#include "coordinator/access/byte_budget.h"
 #include "coordinator/operations/operation.h"
 #include "coordinator/services/admission.h"
 #include "coordinator/services/producer.h"
+#include "farm/byte_budget.h"
 #include "farm/message_bytes.h"
 #include "farm/wire.h"
 
@@ -32,7 +32,7 @@ class Service final : public grpc::Service {
   /// `patience`: with the one message of a call that is admitted, and with who reads its answer.
   /// `waiting`: what much of what waits for its readers is counted in; outlives the service.
   Service(Backend at, const Admission& admission, Executors& executors,
-          std::chrono::milliseconds patience, ByteBudget& waiting);
+          std::chrono::milliseconds patience, farm::ByteBudget& waiting);
 
   /// Makes the stream that answers a Request; or null, with the reason in `refused`.
   template <class Request>
@@ -65,7 +65,7 @@ class Service final : public grpc::Service {
   Backend& backend() { return at_; }
   Executors& executors() { return executors_; }
   const Admission& admission() const { return admission_; }
-  ByteBudget& waiting() { return waiting_; }
+  farm::ByteBudget& waiting() { return waiting_; }
 
  private:
   class UnaryCall;
@@ -81,7 +81,7 @@ class Service final : public grpc::Service {
   const Admission& admission_;
   Executors& executors_;
   const std::chrono::milliseconds patience_;
-  ByteBudget& waiting_;
+  farm::ByteBudget& waiting_;
   std::deque<std::string> names_;  ///< of the methods; gRPC keeps pointers to them
 };
 

@@ -9,11 +9,12 @@
 
 #include <fmt/format.h>
 
-#include "coordinator/access/byte_budget.h"
+#include "coordinator/access/caller.h"
 #include "coordinator/controller/controller.h"
 #include "coordinator/services/service.h"
 #include "coordinator/services/worker_bytes.h"
 #include "core/base/mutex.h"
+#include "farm/byte_budget.h"
 #include "farm/message_bytes.h"
 #include "farm/wire.h"
 
@@ -39,7 +40,7 @@ class Link final : public WorkerLink {
   };
 
   /// `waiting`: what much of what waits is counted in, for `owner`; outlives the stream.
-  Link(Wire& wire, ByteBudget& waiting, ByteBudget::Owner owner)
+  Link(Wire& wire, farm::ByteBudget& waiting, farm::ByteBudget::Owner owner)
       : wire_(&wire), counted_(waiting, std::move(owner)) {}
 
   void send(grpc::ByteBuffer message) override {
@@ -124,7 +125,7 @@ class Link final : public WorkerLink {
 
   core::Mutex mutex_;
   Wire* wire_ HYADES_GUARDED_BY(mutex_);
-  ByteBudget::Share counted_ HYADES_GUARDED_BY(mutex_);
+  farm::ByteBudget::Share counted_ HYADES_GUARDED_BY(mutex_);
   std::deque<grpc::ByteBuffer> queue_ HYADES_GUARDED_BY(mutex_);
   uint64_t waiting_ HYADES_GUARDED_BY(mutex_) = 0;    ///< bytes in queue_
   grpc::ByteBuffer bytes_ HYADES_GUARDED_BY(mutex_);  ///< the message that is being written
@@ -141,12 +142,12 @@ class WorkerStream final : public grpc::ServerBidiReactor<grpc::ByteBuffer, grpc
   /// `caller` has been admitted, or not.
   WorkerStream(Controller& controller, grpc::CallbackServerContext& context,
                const Admission& admission, const Caller& caller, const grpc::Status& admitted,
-               ByteBudget& waiting)
+               farm::ByteBudget& waiting)
       : controller_(controller),
         context_(context),
         admission_(admission),
         caller_(caller),
-        link_(std::make_shared<Link>(*this, waiting, ByteBudget::owner_of(caller))) {
+        link_(std::make_shared<Link>(*this, waiting, owner_of(caller))) {
     if (admitted.ok()) {
       visit_ = admission.visit(caller, [this](const grpc::Status& why) {
         sent_away_ = true;

@@ -21,11 +21,12 @@
 #include <boost/beast/ssl.hpp>
 
 #include "coordinator/access/address.h"
-#include "coordinator/access/byte_budget.h"
+#include "coordinator/access/caller.h"
 #include "coordinator/meters/meters.h"
 #include "coordinator/operations/executors.h"
 #include "coordinator/web/message_heads.h"
 #include "coordinator/web/request_target.h"
+#include "farm/byte_budget.h"
 #include "farm/wire.h"
 #include "farm/wire_status.h"
 
@@ -181,7 +182,7 @@ class ConnectionOver final : public Connection,
     // Even without a body there would be chunks' heads and fields to wait for.
     if (parser_->chunked() && most_bytes == 0) return refuse(http::error::body_limit);
     const uint64_t asked = length ? *length : parser_->chunked() ? most_bytes : 0;
-    body_share_.emplace(world_.bodies, ByteBudget::owner_of(caller_));
+    body_share_.emplace(world_.bodies, owner_of(caller_));
     if (!body_share_->try_hold(asked > kSmallBody ? asked : 0)) {
       return send_away(error_reply(farm::retry_later(grpc::StatusCode::RESOURCE_EXHAUSTED,
                                                      "the coordinator takes in as much as it may",
@@ -275,7 +276,7 @@ class ConnectionOver final : public Connection,
     if (reply_.text && reply_.text.use_count() == 1 && reply_.text->size() > kSmallAnswer) {
       bytes = reply_.text->size();
     }
-    answer_share_.emplace(world_.answers, ByteBudget::owner_of(caller_));
+    answer_share_.emplace(world_.answers, owner_of(caller_));
     if (!answer_share_->try_hold(bytes)) reply_ = error_reply(too_much_unread());
   }
 
@@ -321,7 +322,7 @@ class ConnectionOver final : public Connection,
             if (const auto me = weak.lock()) me->send_piece(std::move(piece));
           });
         },
-        ByteBudget::owner_of(caller_).name);
+        owner_of(caller_).name);
     if (!taken) close();
   }
 
@@ -502,9 +503,9 @@ class ConnectionOver final : public Connection,
   asio::ip::address from_;  ///< of the other side, without the port
   Caller caller_;           ///< of the request in work
   std::unique_ptr<Visit> visit_;
-  std::unique_ptr<OwnerConnections::Entry> entry_;  ///< while its answer takes its time
-  std::optional<ByteBudget::Share> body_share_;     ///< of its body
-  std::optional<ByteBudget::Share> answer_share_;   ///< of what answers it
+  std::unique_ptr<OwnerConnections::Entry> entry_;       ///< while its answer takes its time
+  std::optional<farm::ByteBudget::Share> body_share_;    ///< of its body
+  std::optional<farm::ByteBudget::Share> answer_share_;  ///< of what answers it
   unsigned version_ = 11;
   bool keep_alive_ = false;
   bool head_only_ = false;

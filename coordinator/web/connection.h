@@ -10,11 +10,11 @@
 #include <boost/asio/ip/tcp.hpp>
 
 #include "coordinator/access/authority.h"
-#include "coordinator/access/byte_budget.h"
 #include "coordinator/controller/owner_connections.h"
 #include "coordinator/web/connection_count.h"
 #include "coordinator/web/exchange.h"
 #include "coordinator/web/io_handle.h"
+#include "farm/byte_budget.h"
 #include "farm/thread_pool.h"
 
 namespace boost::asio::ssl {
@@ -59,10 +59,10 @@ struct ConnectionWorld {
   Meters& meters;
   /// What the bodies of requests in work may have together. Small ones are not counted. Outlives
   /// all connections, as the other one does.
-  ByteBudget& bodies;
+  farm::ByteBudget& bodies;
   /// What answers may have in memory together that are read by one connection alone: a text, but
   /// for small ones; of a BodySource the piece that is on its way, and what it keeps.
-  ByteBudget& answers;
+  farm::ByteBudget& answers;
 
   // Of the network's thread.
   ConnectionCount count;

@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "coordinator/access/byte_budget.h"
+#include "coordinator/access/caller.h"
 #include "coordinator/web/job_events.h"
 #include "coordinator/web/route_helpers.h"
 
@@ -51,7 +51,7 @@ void LiveApi::add_routes(Router& router) {
               reply.source = std::make_shared<JobEvents>(controller_, job);
               answer(std::move(reply));
             },
-            ByteBudget::owner_of(request.caller).name);
+            owner_of(request.caller).name);
         if (!taken) answer(error_reply(crowded()));
       });
 }

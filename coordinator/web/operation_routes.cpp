@@ -6,7 +6,7 @@
 #include <string>
 #include <utility>
 
-#include "coordinator/access/byte_budget.h"
+#include "coordinator/access/caller.h"
 #include "coordinator/web/request_form.h"
 #include "coordinator/web/route_helpers.h"
 
@@ -75,8 +75,7 @@ void OperationRoutes::answer(const Operation& operation, const Route& route,
   };
   farm::ThreadPool* executor = executors_.of(route.handle ? route.runs : operation.runs);
   if (executor == nullptr) return work();
-  if (!executor->submit(work, ByteBudget::owner_of(request.caller).name))
-    to(error_reply(crowded()));
+  if (!executor->submit(work, owner_of(request.caller).name)) to(error_reply(crowded()));
 }
 
 }  // namespace hyades::coordinator

@@ -3,7 +3,7 @@
 #include <string>
 #include <utility>
 
-#include "coordinator/access/byte_budget.h"
+#include "coordinator/access/caller.h"
 #include "coordinator/operations/executors.h"
 #include "coordinator/web/exchange.h"
 #include "coordinator/web/request_form.h"
@@ -27,8 +27,8 @@ WebReply reply_in_memory(const Make& make) {
 template <class What>
 void answer_by(farm::ThreadPool& pool, const Caller& caller, const Answer& answer,
                const What& what) {
-  const bool taken = pool.submit([answer, what] { answer(reply_in_memory(what)); },
-                                 ByteBudget::owner_of(caller).name);
+  const bool taken =
+      pool.submit([answer, what] { answer(reply_in_memory(what)); }, owner_of(caller).name);
   if (!taken) answer(error_reply(crowded()));
 }
 

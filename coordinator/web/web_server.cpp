@@ -261,8 +261,8 @@ struct WebServer::Parts {
     }
   }
 
-  ByteBudget bodies{ConnectionWorld::kMostBytes, ConnectionWorld::kMostBytesOfOne};
-  ByteBudget answers{ConnectionWorld::kMostBytes, ConnectionWorld::kMostBytesOfOne};
+  farm::ByteBudget bodies{ConnectionWorld::kMostBytes, ConnectionWorld::kMostBytesOfOne};
+  farm::ByteBudget answers{ConnectionWorld::kMostBytes, ConnectionWorld::kMostBytesOfOne};
   // The network is there before all that belongs to it, and ends after it.
   asio::io_context network{1};
   Meters& meters;

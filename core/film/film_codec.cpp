@@ -263,6 +263,7 @@ uint64_t memory_to_decode(std::span<const std::byte> bytes) {
   ByteReader in(bytes);
   const Result<Beginning> begun = read_beginning(in);
   if (!begun) return 0;
+  if (begun->layout.layers.has_ids()) return UINT64_MAX;
   const auto boxes = in.number<uint32_t>();
   return begun->memory() + begun->layout.part_count() * splat_memory(begun->splats) +
          boxes * kBoxMemory;

@@ -28,9 +28,9 @@ std::vector<std::byte> encode_film(const Film& film);
 /// say.
 Result<Film> decode_film(std::span<const std::byte> bytes, const FilmLimits& limits = {});
 
-/// The most memory [bytes] that decode_film() takes for these, but for ids of objects and
-/// materials, by what stands at their beginning; where that is wrong they are refused before more
-/// is taken. Of bytes that are no film: 0.
+/// The most memory [bytes] that decode_film() takes for these, by what stands at their beginning;
+/// where that is wrong they are refused before more is taken. UINT64_MAX where ids of objects or
+/// materials follow: how many there are stands behind all else. Of bytes that are no film: 0.
 uint64_t memory_to_decode(std::span<const std::byte> bytes);
 
 }  // namespace hyades::core

@@ -112,7 +112,7 @@ class LongAnswers {
     });
   }
 
-  ByteBudget budget;
+  farm::ByteBudget budget;
   asio::io_context network;
   Meters meters;
   farm::ThreadPool files{1, 100};

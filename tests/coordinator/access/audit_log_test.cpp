@@ -109,6 +109,48 @@ TEST_F(Audit, RefusalsThatComeThickAndFastAreCounted) {
   EXPECT_LT(all.size(), 20U);
 }
 
+/// How many entries stand for how many deeds, of those in this log.
+std::pair<size_t, uint64_t> counted(const std::vector<v1::AuditEntry>& entries,
+                                    const std::string& log) {
+  std::pair<size_t, uint64_t> counted{};
+  for (const v1::AuditEntry& entry : entries) {
+    if (entry.log() != log) continue;
+    counted.first += 1;
+    counted.second += std::max<uint64_t>(entry.times(), 1);
+  }
+  return counted;
+}
+
+// Two thousand at once, then one a second: nobody pushes out what others did by his own deeds.
+TEST_F(Audit, DeedsOfOneSubmitterThatComeThickAndFastAreCounted) {
+  for (int i = 0; i < 6000; ++i) log->note(kAlice, "job.pause", "7", grpc::Status::OK, {});
+  open({.folder = folder.path().string()});
+  const auto [lines, deeds] = counted(entries(), "audit");
+  EXPECT_EQ(deeds, 6000U) << "none is forgotten";
+  EXPECT_GE(lines, 2000U);
+  EXPECT_LT(lines, 3000U);
+}
+
+TEST_F(Audit, AllThatAnOperatorDoesIsNotedOneByOne) {
+  Caller operator_ = kAlice;
+  operator_.role = v1::ROLE_OPERATOR;
+  for (int i = 0; i < 3000; ++i) log->note(operator_, "job.pause", "7", grpc::Status::OK, {});
+  open({.folder = folder.path().string()});
+  EXPECT_EQ(counted(entries(), "audit").first, 3000U);
+}
+
+TEST_F(Audit, WhatFailedIsAmongTheRefusalsAndCounted) {
+  const grpc::Status gone = {grpc::StatusCode::NOT_FOUND, "no such job"};
+  log->note(kAlice, "job.delete", "7", grpc::Status::OK, {});
+  for (int i = 0; i < 1000; ++i) log->note(kAlice, "job.delete", "8", gone, {});
+  open({.folder = folder.path().string()});
+  const auto all = entries();
+  EXPECT_EQ(counted(all, "audit"), std::pair(size_t{1}, uint64_t{1}));
+  const auto [lines, failures] = counted(all, "refusals");
+  EXPECT_EQ(failures, 1000U);
+  EXPECT_LT(lines, 20U);
+}
+
 /// One of so many networks: 2001:db8:: and what follows, each a /64 of its own.
 Caller stranger(int network) {
   char address[64];

@@ -6,8 +6,10 @@
 namespace hyades::coordinator {
 namespace {
 
-/// What becomes of a stream whose Hello says `protocol`, in a call that says `called`.
-grpc::Status attach(const FarmWorld& world, const std::string& called, uint32_t protocol) {
+/// What becomes of a stream whose Hello says `protocol` and that many units in hand, in a call that
+/// says `called`.
+grpc::Status attach(const FarmWorld& world, const std::string& called, uint32_t protocol,
+                    int in_hand = 0) {
   const auto stub = v1::Work::NewStub(world.channel);
   grpc::ClientContext context;
   context.AddMetadata(farm::kProtocolKey, called);
@@ -21,12 +23,23 @@ grpc::Status attach(const FarmWorld& world, const std::string& called, uint32_t 
   hello.set_name("versions");
   hello.set_worker_class("class-a");
   hello.set_threads(1);
+  for (int i = 0; i < in_hand; ++i) hello.add_in_hand()->set_job(1);
   stream->Write(message);
   v1::CoordinatorMessage reply;
   if (stream->Read(&reply) && reply.has_welcome()) stream->WritesDone();
   while (stream->Read(&reply)) {
   }
   return stream->Finish();
+}
+
+TEST(Attach, NobodyComesWithUnitsWithoutEnd) {
+  FarmWorld world;
+  world.start();
+  const std::string ours = std::to_string(farm::kProtocol);
+  const grpc::Status status = attach(world, ours, farm::kProtocol, 20'001);
+  EXPECT_EQ(status.error_code(), grpc::StatusCode::INVALID_ARGUMENT);
+  EXPECT_NE(status.error_message().find("at most 20000"), std::string::npos)
+      << status.error_message();
 }
 
 /// A token with which workers join; the farm's first one, an admin's, is made besides.

@@ -194,6 +194,30 @@ TEST_F(ConnectionGateTest, OneTokenDoesNotShutAllOthersOut) {
   EXPECT_TRUE(holds(0, 0, 7)) << "where no token is asked for all are one";
 }
 
+TEST_F(ConnectionGateTest, OneMachineDoesNotShutOthersOutThatJoinedAsItDid) {
+  limits.known = 16;
+  limits.open_calls = 10;
+  limits.broken_rest = 1h;
+  open();
+  std::deque<PlainCaller> callers;
+  const auto connect = [&](const std::string& machine) -> PlainCaller& {
+    callers.emplace_back(port);
+    EXPECT_TRUE(soon([&] { return came_in() == callers.size(); }));
+    gate->mark_known(callers.back().address(), "joining", machine);
+    return callers.back();
+  };
+  for (int i = 0; i < 6; ++i) connect("greedy");
+  ASSERT_TRUE(holds(0, 0, 4)) << "a quarter of what is free";
+  const PlainCaller& honest = connect("honest");
+  EXPECT_TRUE(holds(0, 0, 5));
+  for (int i = 0; i < 11; ++i) gate->note_begun(callers.front().address());
+  EXPECT_TRUE(callers.front().ended(20s));
+  EXPECT_TRUE(connect("greedy").ended(20s)) << "it rests";
+  connect("another");
+  EXPECT_TRUE(holds(0, 0, 5)) << "who joined by the same token does not";
+  EXPECT_FALSE(honest.ended(100ms));
+}
+
 TEST_F(ConnectionGateTest, WhoTalksBeforeHeIsKnownIsCutOff) {
   open();
   const PlainCaller brief(port);

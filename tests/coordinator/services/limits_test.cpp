@@ -6,8 +6,8 @@
 #include <thread>
 #include <vector>
 
-#include "coordinator/services/part_count.h"
 #include "coordinator/services/worker_bytes.h"
+#include "farm/part_count.h"
 #include "tests/coordinator/services/farm_world.h"
 
 namespace hyades::coordinator {
@@ -64,6 +64,21 @@ TEST_F(Limits, OfSubmit) {
       submit([](auto& r) { r.mutable_spec()->set_document(std::string(17 << 20, 'd')); }), invalid,
       "16777216");
   EXPECT_TRUE(submit([](auto&) {}).ok()) << "the same without any of that";
+}
+
+// gRPC looks at how long a message is when it has unpacked it.
+TEST_F(Limits, PackedMessagesAreNotUnpacked) {
+  const std::string text = FarmWorld::document(1);
+  ASSERT_TRUE(world.upload(text).ok());
+  v1::SubmitRequest request = FarmWorld::request(text);
+  request.mutable_spec()->set_name(std::string(150, 'a'));  // which is shorter when it is packed
+  v1::SubmitResponse response;
+  for (const bool packed : {true, false}) {
+    const auto context = world.context();
+    if (packed) context->set_compression_algorithm(GRPC_COMPRESS_GZIP);
+    const grpc::Status status = world.jobs->Submit(context.get(), request, &response);
+    EXPECT_EQ(status.ok(), !packed) << status.error_message();
+  }
 }
 
 TEST_F(Limits, OfOtherRequestsAreMuchLower) {
@@ -374,7 +389,7 @@ TEST(PartCount, CountsMessagesTextsAndWhatIsUnknown) {
   const auto few = [](const std::string& bytes, const google::protobuf::Descriptor& type,
                       uint64_t most) {
     const grpc::Slice slice(bytes);
-    return has_few_parts(grpc::ByteBuffer(&slice, 1), type, most);
+    return farm::has_few_parts(grpc::ByteBuffer(&slice, 1), type, most);
   };
   v1::SubmitRequest request;
   for (int i = 0; i < 10; ++i) request.mutable_spec()->add_files()->set_path("a path");

@@ -1,11 +1,11 @@
 // Whose bytes there may be how many of.
-#include "coordinator/access/byte_budget.h"
+#include "farm/byte_budget.h"
 
 #include <optional>
 
 #include <gtest/gtest.h>
 
-namespace hyades::coordinator {
+namespace hyades::farm {
 namespace {
 
 using Share = ByteBudget::Share;
@@ -66,27 +66,5 @@ TEST(ByteBudget, OneMachineLeavesRoomForOthersOfItsName) {
   EXPECT_TRUE(budget.has_room({"joining", "5"}, 50));
 }
 
-TEST(ByteBudget, StrangersOwnWhereTheyComeFrom) {
-  const auto owner = [](const char* name, const char* address) {
-    Caller caller;
-    caller.name = name;
-    caller.address = address;
-    return ByteBudget::owner_of(caller).name;
-  };
-  EXPECT_EQ(owner("ada", "192.0.2.1:5000"), owner("ada", "192.0.2.2:5000"));
-  EXPECT_NE(owner("ada", "192.0.2.1:5000"), owner("bob", "192.0.2.1:5000"));
-  EXPECT_EQ(owner("", "192.0.2.1:5000"), owner("", "192.0.2.1:5001"));
-  EXPECT_NE(owner("", "192.0.2.1:5000"), owner("", "192.0.2.2:5000"));
-}
-
-TEST(ByteBudget, MachinesWithTokensOfTheirOwnAreTold) {
-  Caller caller;
-  caller.name = "joining";
-  caller.worker = "node-7";
-  EXPECT_EQ(ByteBudget::owner_of(caller).machine, "node-7");
-  caller.worker.clear();
-  EXPECT_EQ(ByteBudget::owner_of(caller).machine, "");
-}
-
 }  // namespace
-}  // namespace hyades::coordinator
+}  // namespace hyades::farm

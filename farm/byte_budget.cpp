@@ -1,8 +1,6 @@
-#include "coordinator/access/byte_budget.h"
+#include "farm/byte_budget.h"
 
-#include "coordinator/access/address.h"
-
-namespace hyades::coordinator {
+namespace hyades::farm {
 namespace {
 
 uint64_t at(const std::map<std::string, uint64_t>& held, const std::string& name) {
@@ -20,11 +18,6 @@ void set(std::map<std::string, uint64_t>& held, const std::string& name, uint64_
 }
 
 }  // namespace
-
-ByteBudget::Owner ByteBudget::owner_of(const Caller& caller) {
-  if (caller.name.empty()) return {neighbourhood_of(caller.address)};
-  return {caller.name, caller.worker};
-}
 
 bool ByteBudget::has_room(const Owner& owner, uint64_t bytes) const {
   const core::MutexLock lock(mutex_);
@@ -65,4 +58,4 @@ bool ByteBudget::change(const Owner& owner, uint64_t before, uint64_t after, boo
   return true;
 }
 
-}  // namespace hyades::coordinator
+}  // namespace hyades::farm

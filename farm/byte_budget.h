@@ -5,10 +5,9 @@
 #include <string>
 #include <utility>
 
-#include "coordinator/access/caller.h"
 #include "core/base/mutex.h"
 
-namespace hyades::coordinator {
+namespace hyades::farm {
 
 /// How many bytes are held at once, and for whom, so that nobody fills the memory or takes the
 /// room of all others. Thread-safe.
@@ -19,9 +18,6 @@ class ByteBudget {
     std::string name;
     std::string machine{};  ///< one of several that share the name; empty: he has the name alone
   };
-  /// The caller's owner: the name of his token, and, where that is one machine's own, the machine;
-  /// where he has none that part of the network that he comes from (neighbourhood_of()).
-  static Owner owner_of(const Caller& caller);
 
   /// At most `most` are held, of one name at most `most_of_one`, and of one machine at most a
   /// quarter of that.
@@ -65,4 +61,4 @@ class ByteBudget {
   Held held_for_machines_ HYADES_GUARDED_BY(mutex_);  ///< by name and machine
 };
 
-}  // namespace hyades::coordinator
+}  // namespace hyades::farm
