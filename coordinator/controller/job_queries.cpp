@@ -16,6 +16,7 @@
 #include "coordinator/controller/stored_outputs.h"
 #include "core/base/text.h"
 #include "core/film/film_exr.h"
+#include "core/image/read_image.h"
 #include "core/job/output_path.h"
 #include "core/job/video.h"
 #include "farm/wire.h"
@@ -117,10 +118,18 @@ grpc::Status no_room_for_copy() {
 
 grpc::Status too_large(uint64_t bytes, const FilmCopies& copies) {
   return {grpc::StatusCode::FAILED_PRECONDITION,
-          fmt::format("the film is too large to be shown while it is rendered: that takes {}, and "
-                      "may take {} (a quarter of --film-memory)",
+          fmt::format("the film is too large to be shown: that takes {}, and may take {} (a "
+                      "quarter of --film-memory)",
                       core::format_bytes(bytes), core::format_bytes(copies.most()))};
 }
+
+/// Why so many bytes could not be held.
+grpc::Status no_room(uint64_t bytes, const FilmCopies& copies) {
+  return bytes > copies.most() ? too_large(bytes, copies) : no_room_for_copy();
+}
+
+/// What a film of so many bytes takes with the picture that is made of it.
+uint64_t with_picture(uint64_t film_bytes) { return film_bytes / 2 * 3; }
 
 }  // namespace
 
@@ -315,10 +324,15 @@ grpc::Status JobQueries::kept_film(uint64_t id, int32_t frame, const FilmTaker& 
   if (!outputs) return farm::unavailable(outputs.error());
   for (const StoredOutput& output : *outputs) {
     if (!output.path.ends_with(".film.exr")) continue;
-    const auto room = room_for_picture(output.size);
-    if (!room) return no_room_for_copy();
+    FilmCopies& copies = context_.film_copies;
+    const auto file_room = copies.hold(output.size);
+    if (!file_room) return no_room(output.size, copies);
     const auto bytes = read_output(context_.output_folder(id), output);
     if (!bytes) return {grpc::StatusCode::DATA_LOSS, bytes.error().message};
+    const auto memory = core::film_exr_memory(*bytes, output.path);
+    if (!memory) return {grpc::StatusCode::DATA_LOSS, memory.error().message};
+    const auto room = copies.hold(with_picture(*memory));
+    if (!room) return no_room(with_picture(*memory), copies);
     auto file = core::read_film_exr(*bytes, output.path);
     if (!file) return {grpc::StatusCode::DATA_LOSS, file.error().message};
     then(grpc::Status::OK, file->info, kept_with(room, std::move(file->film)));
@@ -330,11 +344,35 @@ grpc::Status JobQueries::kept_film(uint64_t id, int32_t frame, const FilmTaker& 
                       frame)};
 }
 
-std::shared_ptr<const void> JobQueries::room_for_picture(uint64_t file_bytes) {
-  constexpr uint64_t kTimes = 40;  // of a PNG, or an EXR of zeros in most layers
+grpc::Status JobQueries::picture(uint64_t id, const StoredOutput& output, core::Image& image,
+                                 std::shared_ptr<const void>& room) {
+  constexpr uint64_t kTimes = 40;  // what files hold mostly, but one that is black is a thousandth
   constexpr uint64_t kLeast = uint64_t{16} << 20U;
+  constexpr uint64_t kOfPixel = 32;  // of four channels, and once more of what is made of them
   FilmCopies& copies = context_.film_copies;
-  return copies.hold(std::min(std::max(kTimes * file_bytes, kLeast), copies.most()));
+  const auto file_room = copies.hold(output.size);
+  if (!file_room) return no_room(output.size, copies);
+  const auto bytes = read_output(context_.output_folder(id), output);
+  if (!bytes) return {grpc::StatusCode::DATA_LOSS, bytes.error().message};
+  // What turns out to be larger than was thought is tried again, once it has so much more room; one
+  // at a time it may be as large as its film.
+  const uint64_t most = copies.most() - output.size;
+  for (uint64_t held = std::max(kTimes * output.size, kLeast);; held *= 4) {
+    held = std::min(held, most);
+    room.reset();
+    room = copies.hold(held);
+    if (!room) return no_room_for_copy();
+    core::ImageLimits limits;
+    if (held < most) {
+      limits.max_pixels = std::min<uint64_t>(limits.max_pixels, held / kOfPixel);
+    }
+    auto read = core::read_image(*bytes, output.path, core::ColorSpace::automatic, limits);
+    if (read) {
+      image = std::move(*read);
+      return grpc::Status::OK;
+    }
+    if (held == most) return {grpc::StatusCode::DATA_LOSS, read.error().message};
+  }
 }
 
 grpc::Status JobQueries::film(uint64_t id, int32_t frame, FilmTaker then) {
@@ -386,11 +424,9 @@ grpc::Status JobQueries::copy_film(uint64_t id, int32_t frame, std::optional<cor
                             frame, info = std::move(*info), then = std::move(then)] {
     const auto film = film_store->film(frame);
     if (!film) return then(nothing_yet(), info, nullptr);
-    const uint64_t bytes = film->memory() / 2 * 3;  // a picture is made of it
+    const uint64_t bytes = with_picture(film->memory());
     const auto room = copies->hold(bytes);
-    if (!room)
-      return then(bytes > copies->most() ? too_large(bytes, *copies) : no_room_for_copy(), info,
-                  {});
+    if (!room) return then(no_room(bytes, *copies), info, {});
     then(grpc::Status::OK, info, kept_with(room, core::Film(*film)));
   });
   return grpc::Status::OK;

@@ -13,6 +13,7 @@
 #include "coordinator/controller/dispatcher.h"
 #include "coordinator/controller/job_table.h"
 #include "coordinator/controller/timeline.h"
+#include "core/image/image.h"
 
 namespace hyades::coordinator {
 
@@ -84,9 +85,10 @@ class JobQueries {
   /// `then` (which is quick), perhaps by another thread. May wait for the disk. RESOURCE_EXHAUSTED
   /// where there is no room for one (FilmCopies), FAILED_PRECONDITION where there never is.
   grpc::Status film(uint64_t job, int32_t frame, FilmTaker then) HYADES_EXCLUDES(state_lock);
-  /// Room for what is made of a file of so many bytes, a picture, for as long as the result is
-  /// kept; null where there is none now.
-  std::shared_ptr<const void> room_for_picture(uint64_t file_bytes);
+  /// Reads a finished picture of the job. `room`: among copies of films, and has to be kept as long
+  /// as the picture. DATA_LOSS where the file is damaged; else as of film().
+  grpc::Status picture(uint64_t job, const StoredOutput& output, core::Image& image,
+                       std::shared_ptr<const void>& room);
   /// film() without what it is of, for which the job's document may have to be read.
   grpc::Status film_alone(uint64_t job, int32_t frame, FilmTaker then) HYADES_EXCLUDES(state_lock);
   /// What was done for the job where and when, as far as it is kept in memory. May wait for the

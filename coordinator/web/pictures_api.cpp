@@ -10,7 +10,6 @@
 #include "coordinator/operations/file_transfer.h"
 #include "coordinator/web/picture_encoding.h"
 #include "coordinator/web/route_helpers.h"
-#include "core/image/read_image.h"
 #include "core/job/output_path.h"
 #include "farm/wire.h"
 #include "farm/wire_status.h"
@@ -104,7 +103,7 @@ void PicturesApi::add_routes(Router& router) {
                               "layer: png shows beauty; expected format=half for other layers"}));
           return;
         }
-        const Asker asker{ByteBudget::owner_of(from.caller), answer};
+        const Asker asker{owner_of(from.caller), answer};
         const bool taken =
             pool_.submit([this, asked, asker] { answer_picture(asked, asker); }, asker.owner.name);
         if (!taken) answer(error_reply(crowded()));
@@ -127,7 +126,7 @@ void PicturesApi::answer_picture(const Asked& asked, const Asker& asker) {
   }
 }
 
-WebReply PicturesApi::of_file(const Asked& asked, const ByteBudget::Owner& owner,
+WebReply PicturesApi::of_file(const Asked& asked, const farm::ByteBudget::Owner& owner,
                               const FrameNow& now) {
   const auto outputs = controller_.store().outputs_of(asked.job, asked.frame);
   if (!outputs) return error_reply(farm::unavailable(outputs.error()));
@@ -143,17 +142,17 @@ WebReply PicturesApi::of_file(const Asked& asked, const ByteBudget::Owner& owner
   const std::string tag = "\"" + farm::hex_from_wire(best->sha256) + "\"";
   if (const auto made = find(asked, tag, true)) return *made;
   if (!has_room(owner)) return too_many();
-  const auto room = controller_.queries().room_for_picture(best->size);
-  if (!room) return too_many();
-  const auto bytes = read_output(controller_.output_folder(asked.job), *best);
-  if (!bytes) return error_reply(damaged_output(best->path));
-  auto image = core::read_image(*bytes, best->path);
-  if (!image) return error_reply(damaged_output(best->path));
+  core::Image image;
+  std::shared_ptr<const void> room;
+  const grpc::Status read = controller_.queries().picture(asked.job, *best, image, room);
+  if (read.error_code() == grpc::StatusCode::DATA_LOSS)
+    return error_reply(damaged_output(best->path));
+  if (!read.ok()) return error_reply(read);
   FrameNow plain = now;
   plain.tone_map = "srgb";  // a finished picture has its own
   plain.exposure = 0;
   const bool exact = core::file_extension(best->path) == ".exr";
-  WebReply reply = show(asked, plain, {std::move(*image), {}, exact}, tag);
+  WebReply reply = show(asked, plain, {std::move(image), {}, exact}, tag);
   count(reply, owner);
   keep(asked, tag, true, reply);
   return reply;
@@ -256,7 +255,7 @@ void PicturesApi::make_all(FrameId id, const FrameNow& now, const grpc::Status& 
 }
 
 /// Whether a picture may be made for the owner: how large it becomes is not known before.
-bool PicturesApi::has_room(const ByteBudget::Owner& owner) {
+bool PicturesApi::has_room(const farm::ByteBudget::Owner& owner) {
   if (held_->has_room(owner, 1)) return true;
   // What is kept in case somebody asks for it gives way to what somebody asks for.
   Kept gone;
@@ -271,16 +270,16 @@ bool PicturesApi::has_room(const ByteBudget::Owner& owner) {
 }
 
 /// Counts the picture for as long as anybody holds it: a connection that does not read, say.
-void PicturesApi::count(WebReply& reply, const ByteBudget::Owner& owner) const {
+void PicturesApi::count(WebReply& reply, const farm::ByteBudget::Owner& owner) const {
   if (reply.status != 200) return;
   struct Counted {
-    Counted(std::shared_ptr<ByteBudget> of, const ByteBudget::Owner& owner,
+    Counted(std::shared_ptr<farm::ByteBudget> of, const farm::ByteBudget::Owner& owner,
             std::shared_ptr<const std::string> bytes)
         : budget(std::move(of)), share(*budget, owner), text(std::move(bytes)) {
       share.hold(text->size());
     }
-    std::shared_ptr<ByteBudget> budget;
-    ByteBudget::Share share;
+    std::shared_ptr<farm::ByteBudget> budget;
+    farm::ByteBudget::Share share;
     std::shared_ptr<const std::string> text;
   };
   const auto counted = std::make_shared<Counted>(held_, owner, std::move(reply.text));

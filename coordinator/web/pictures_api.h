@@ -13,10 +13,10 @@
 #include <utility>
 #include <vector>
 
-#include "coordinator/access/byte_budget.h"
 #include "coordinator/controller/controller.h"
 #include "coordinator/web/router.h"
 #include "core/base/mutex.h"
+#include "farm/byte_budget.h"
 #include "farm/thread_pool.h"
 
 namespace hyades::coordinator {
@@ -36,9 +36,9 @@ class PicturesApi {
 
   /// `held` counts the bytes of the pictures. What is begun with goes a picture beyond it for each
   /// thread.
-  explicit PicturesApi(
-      Controller& controller,
-      std::shared_ptr<ByteBudget> held = std::make_shared<ByteBudget>(kMostBytes, kMostBytesOfOne))
+  explicit PicturesApi(Controller& controller,
+                       std::shared_ptr<farm::ByteBudget> held =
+                           std::make_shared<farm::ByteBudget>(kMostBytes, kMostBytesOfOne))
       : controller_(controller), gate_(std::make_shared<Gate>()), held_(std::move(held)) {}
   PicturesApi(const PicturesApi&) = delete;
   PicturesApi& operator=(const PicturesApi&) = delete;
@@ -72,7 +72,7 @@ class PicturesApi {
   using Kept = std::list<std::pair<Asked, Made>>;
   /// Who waits for a picture.
   struct Asker {
-    ByteBudget::Owner owner;  ///< whom its bytes are counted for
+    farm::ByteBudget::Owner owner;  ///< whom its bytes are counted for
     Answer answer;
   };
   using Askers = std::vector<Asker>;
@@ -86,7 +86,7 @@ class PicturesApi {
   };
 
   void answer_picture(const Asked& asked, const Asker& asker);
-  WebReply of_file(const Asked& asked, const ByteBudget::Owner& owner, const FrameNow& now);
+  WebReply of_file(const Asked& asked, const farm::ByteBudget::Owner& owner, const FrameNow& now);
   void want(const Asked& asked, const Asker& asker);
   bool enqueue(const Asked& asked, const Asker& asker);
   static bool may_want(const Wanted& wanted, const Asked& asked, const std::string& owner);
@@ -94,14 +94,15 @@ class PicturesApi {
   void take_film(FrameId id);
   void make_all(FrameId id, const FrameNow& now, const grpc::Status& found, const core::Film* film);
   void end(FrameId id, const std::function<WebReply(const Asked&, const Askers&)>& reply);
-  bool has_room(const ByteBudget::Owner& owner);
-  void count(WebReply& reply, const ByteBudget::Owner& owner) const;
+  bool has_room(const farm::ByteBudget::Owner& owner);
+  void count(WebReply& reply, const farm::ByteBudget::Owner& owner) const;
   std::optional<WebReply> find(const Asked& asked, const std::string& tag, bool over);
   void keep(const Asked& asked, const std::string& tag, bool over, const WebReply& reply);
 
   Controller& controller_;
   const std::shared_ptr<Gate> gate_;
-  const std::shared_ptr<ByteBudget> held_;  ///< connections may hold pictures for longer than this
+  const std::shared_ptr<farm::ByteBudget>
+      held_;  ///< connections may hold pictures for longer than this
   core::Mutex mutex_;
   Kept kept_ HYADES_GUARDED_BY(mutex_);  ///< what was asked for last is in front
   std::map<Asked, Kept::iterator> index_ HYADES_GUARDED_BY(mutex_);

@@ -30,6 +30,10 @@ Result<FilmFile> read_film_exr(const std::string& path);
 /// Reads a film file from its bytes, as read_film_exr(path) does; `name` is used in errors only.
 Result<FilmFile> read_film_exr(const Bytes& bytes, const std::string& name);
 
+/// The memory [bytes] that read_film_exr(bytes, name) takes for the film, but for ids of objects and
+/// materials; errors as there, as far as the header tells.
+Result<uint64_t> film_exr_memory(const Bytes& bytes, const std::string& name);
+
 /// What a film file belongs to, without its pixels, which are not looked at.
 Result<FilmInfo> read_film_info(const std::string& path);
 

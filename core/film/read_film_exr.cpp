@@ -187,6 +187,14 @@ Result<FilmFile> read_film_exr(const std::string& path) {
   return read_film_exr(*bytes, path);
 }
 
+Result<uint64_t> film_exr_memory(const Bytes& bytes, const std::string& name) {
+  return in_words(name, [&]() -> Result<uint64_t> {
+    const Result<Opened> opened = open_parts(bytes.span());
+    if (!opened) return opened.error();
+    return film_memory(make_film_layout(opened->header.layers), opened->header.window);
+  });
+}
+
 Result<FilmInfo> read_film_info(const std::string& path) {
   const Result<Bytes> bytes = map_file(path);
   if (!bytes) return bytes.error().in("cannot read " + path);

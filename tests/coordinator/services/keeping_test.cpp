@@ -75,6 +75,27 @@ TEST(Keeping, FilmsOfFinishedFramesStayWhereTheJobSaysSo) {
   EXPECT_NE(gone.error_message().find("keep_films"), std::string::npos) << gone.error_message();
 }
 
+// Its file may be a thousandth of what it takes in memory, black as it may be.
+TEST(Keeping, AFilmThatIsTooLargeIsNotReadToBeShown) {
+  FarmWorld world;
+  world.options.film_memory = uint64_t{1} << 20U;
+  world.start();
+  const uint64_t job = world.submit_text(FarmWorld::document(1) + "keep_films: true\n");
+  {
+    const ScriptedWorker worker(world.address, world.script());
+    ASSERT_TRUE(world.wait_for(job, v1::JOB_STATE_DONE));
+  }
+  std::string bytes;
+  const grpc::Status status = fetch_film(world, job, 1, bytes);
+  EXPECT_EQ(status.error_code(), grpc::StatusCode::FAILED_PRECONDITION);
+  EXPECT_NE(status.error_message().find("too large to be shown"), std::string::npos)
+      << status.error_message();
+  world.stop();
+  world.options.film_memory = uint64_t{64} << 20U;
+  world.start();
+  EXPECT_TRUE(fetch_film(world, job, 1, bytes).ok());
+}
+
 void finish_and_delete(FarmWorld& world, uint64_t job) {
   v1::JobResponse now;
   (void)world.jobs->Cancel(world.context().get(), about(job), &now);

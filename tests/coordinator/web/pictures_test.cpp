@@ -10,8 +10,8 @@
 #include <string>
 #include <vector>
 
-#include "coordinator/access/byte_budget.h"
 #include "coordinator/web/pictures_api.h"
+#include "farm/byte_budget.h"
 #include "tests/coordinator/web/web_world.h"
 
 namespace hyades::coordinator {
@@ -94,7 +94,8 @@ class UnreadPictures : public ::testing::Test {
   std::string job_;
   std::atomic<int> units_ = 0;
   std::optional<ScriptedWorker> worker_;
-  const std::shared_ptr<ByteBudget> held_ = std::make_shared<ByteBudget>(kMost, kMostOfOne);
+  const std::shared_ptr<farm::ByteBudget> held_ =
+      std::make_shared<farm::ByteBudget>(kMost, kMostOfOne);
   Router router_;
   std::optional<PicturesApi> api_;
 };

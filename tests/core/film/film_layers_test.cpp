@@ -85,6 +85,13 @@ TEST(FilmLayers, AddUpToTheSameBitsInAnyOrder) {
   }
 }
 
+TEST(FilmLayers, NobodyKnowsBeforeWhatIdsTake) {
+  Film film = part_of(false, {4, 2, 30, 21}, {0, 2});
+  EXPECT_EQ(memory_to_decode(encode_film(film)), UINT64_MAX);
+  Film plain(make_film_layout({}), {4, 2, 30, 21});
+  EXPECT_LT(memory_to_decode(encode_film(plain)), uint64_t{1} << 20U);
+}
+
 TEST(FilmLayers, JoinedFilmsHoldTheSplatsOfEachPartOfBoth) {
   const std::vector<Film> films = parts(true);
   const Film all = all_of(films);
