@@ -93,51 +93,59 @@ uint64_t& VideoMaker::served(const std::string& owner) {
   return served_[owner];
 }
 
-/// Takes the job out whose owner has waited longest; of one owner's the one that came first.
-std::optional<JobId> VideoMaker::next_due() {
-  auto best = due_.end();
-  uint64_t since = 0;
-  for (auto it = due_.begin(); it != due_.end(); ++it) {
-    const ActiveJob* active = jobs_.find(*it);
-    const uint64_t when = active == nullptr ? 0 : last_turn(active->stored.owner);
-    if (best != due_.end() && when >= since) continue;
-    best = it;
-    since = when;
-  }
-  if (best == due_.end()) return std::nullopt;
-  const JobId job = *best;
-  due_.erase(best);
-  if (const ActiveJob* active = jobs_.find(job)) served(active->stored.owner) = ++turns_;
-  return job;
+std::string VideoMaker::owner_of(JobId job) const {
+  const ActiveJob* active = jobs_.find(job);
+  return active == nullptr ? std::string() : active->stored.owner;
 }
 
-/// The video that waits and whose owner has waited longest; null where none waits.
-RequestedVideo* VideoMaker::next_asked() {
-  RequestedVideo* best = nullptr;
-  uint64_t since = 0;
+/// The next one: of the owner who has waited longest; of one owner's those of jobs come first, and
+/// then those that were asked for earlier.
+VideoMaker::Next VideoMaker::next() {
+  Next best;
+  std::string whose;
+  uint64_t since = UINT64_MAX;
+  for (const JobId job : due_) {
+    std::string owner = owner_of(job);
+    const uint64_t when = last_turn(owner);
+    if (when >= since) continue;
+    best.job = job;
+    whose = std::move(owner);
+    since = when;
+  }
   for (RequestedVideo& video : asked_) {
     if (video.state != RequestedVideo::State::waiting) continue;
     const uint64_t when = last_turn(video.owner);
-    if (best != nullptr && when >= since) continue;
-    best = &video;
+    if (when >= since) continue;
+    best = {std::nullopt, &video};
+    whose = video.owner;
     since = when;
   }
-  if (best != nullptr) served(best->owner) = ++turns_;
+  if (since != UINT64_MAX) served(whose) = ++turns_;
   return best;
 }
 
-/// Jobs' own videos come before those that somebody asked for. False: a job's wait, to be tried
-/// again.
+/// False: a job's wait, to be tried again.
 bool VideoMaker::make_next() {
-  std::optional<JobId> job;
+  JobId job{};
+  RequestedVideo asked;
   {
     const StateLock lock(context_.mutex);
     if (context_.stop) return true;
     in_work_.reset();
-    job = next_due();
+    const Next what = next();
+    stop_ = false;
+    if (what.job) {
+      job = *what.job;
+      std::erase(due_, job);
+    } else if (what.asked != nullptr) {
+      what.asked->state = RequestedVideo::State::making;
+      asked = *what.asked;
+    } else {
+      return true;
+    }
   }
-  if (job) return make_of_job(*job);
-  make_asked();
+  if (asked.number == 0) return make_of_job(job);
+  make_asked(asked);
   return true;
 }
 
@@ -285,17 +293,7 @@ grpc::Status VideoMaker::asked(uint64_t id, std::vector<RequestedVideo>& videos)
   return grpc::Status::OK;
 }
 
-/// The first of those that were asked for and wait.
-void VideoMaker::make_asked() {
-  RequestedVideo video;
-  {
-    const StateLock lock(context_.mutex);
-    RequestedVideo* found = next_asked();
-    if (found == nullptr) return;
-    found->state = RequestedVideo::State::making;
-    video = *found;
-    stop_ = context_.stop.load();
-  }
+void VideoMaker::make_asked(const RequestedVideo& video) {
   const core::Status done = make(video.job, "asked-video", {video.video, video.frames}, {});
   disk_.measure();
   asked_is_over(video, done);

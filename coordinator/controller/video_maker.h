@@ -54,15 +54,20 @@ class VideoMaker {
  private:
   bool make_next() HYADES_EXCLUDES(state_lock);
   bool make_of_job(JobId job) HYADES_EXCLUDES(state_lock);
-  std::optional<JobId> next_due() HYADES_REQUIRES(state_lock);
-  RequestedVideo* next_asked() HYADES_REQUIRES(state_lock);
+  /// A job whose videos are due, or one that was asked for; neither: none waits.
+  struct Next {
+    std::optional<JobId> job{};
+    RequestedVideo* asked = nullptr;
+  };
+  Next next() HYADES_REQUIRES(state_lock);
+  std::string owner_of(JobId job) const HYADES_REQUIRES(state_lock);
   uint64_t last_turn(const std::string& owner) const HYADES_REQUIRES(state_lock);
   uint64_t& served(const std::string& owner) HYADES_REQUIRES(state_lock);
   core::Result<bool> make_one(uint64_t id, const std::vector<core::VideoDesc>& videos,
                               const core::VideoFrames& frames);
   core::Status make(uint64_t id, const std::string& scratch, const VideoTask& task,
                     const std::vector<std::string>& gone);
-  void make_asked() HYADES_EXCLUDES(state_lock);
+  void make_asked(const RequestedVideo& video) HYADES_EXCLUDES(state_lock);
   void asked_is_over(const RequestedVideo& video, const core::Status& done)
       HYADES_EXCLUDES(state_lock);
 

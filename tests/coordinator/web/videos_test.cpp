@@ -1,6 +1,12 @@
 // Videos that somebody asks for.
 #include <gtest/gtest.h>
 
+#include <sys/stat.h>
+
+#include <fstream>
+#include <string>
+#include <vector>
+
 #include "core/base/child_process.h"
 #include "tests/coordinator/web/web_world.h"
 
@@ -91,6 +97,91 @@ TEST(Videos, AreMadeOfAFinishedJob) {
   EXPECT_EQ(bytes.body.substr(4, 4), "ftyp");
   EXPECT_EQ(world.client->send("DELETE", path).status, 204);
   EXPECT_EQ(world.client->get(path + "/videos").status, 404);
+}
+
+/// A coordinator whose videos are begun with, but not made before go() was called. Its finished
+/// frames are finished at once.
+class SlowVideos : public ::testing::Test {
+ protected:
+  SlowVideos() {
+    const std::string program = world.farm.folder.file("slow_finisher");
+    std::ofstream(program) << "#!/bin/sh\n"
+                           << "if [ \"$1\" = video ]; then\n"
+                           << "  echo \"$2\" >>" << begun_ << "\n"
+                           << "  until [ -e " << go_ << " ]; do sleep 0.02; done\n"
+                           << "fi\n"
+                           << "exec " << world.farm.options.finisher << " \"$@\"\n";
+    EXPECT_EQ(::chmod(program.c_str(), 0700), 0);
+    world.farm.options.finisher = program;
+    world.start();
+  }
+
+  /// A job of the owner's, once its frames are finished.
+  uint64_t finished_job(const std::string& owner) {
+    const uint64_t job =
+        world.farm.submit(1, [&](v1::SubmitRequest& request) { request.set_owner(owner); });
+    const ScriptedWorker worker(world.farm.address, world.farm.script());
+    EXPECT_TRUE(world.farm.wait_for(job, v1::JOB_STATE_DONE));
+    return job;
+  }
+  /// Asks for the owner's N-th video of the job; what is answered.
+  int ask(uint64_t job, int number) const {
+    return world.client
+        ->post("/api/v1/jobs/" + std::to_string(job) + "/videos",
+               R"({"file": ")" + std::to_string(number) + R"(.mp4"})")
+        .status;
+  }
+  void go() const { std::ofstream(go_) << "go"; }
+  /// The jobs of whose videos one was begun with, in that order.
+  std::vector<uint64_t> begun() const {
+    std::vector<uint64_t> jobs;
+    std::ifstream file(begun_);
+    for (std::string line; std::getline(file, line);) {
+      jobs.push_back(std::stoull(line.substr(line.rfind('/') + 1)));
+    }
+    return jobs;
+  }
+
+  WebWorld world;
+
+ private:
+  const std::string begun_ = world.farm.folder.file("begun");
+  const std::string go_ = world.farm.folder.file("go");
+};
+
+TEST_F(SlowVideos, OwnersTakeTurnsAndNobodyFillsTheRow) {
+  const uint64_t many = finished_job("ada");
+  const uint64_t one = finished_job("bob");
+  for (int i = 0; i < 8; ++i) EXPECT_EQ(ask(many, i), 202) << i;
+  EXPECT_EQ(ask(many, 8), 429) << "eight of one owner's wait";
+  EXPECT_EQ(ask(one, 0), 202) << "there is room for others";
+  ASSERT_TRUE(eventually([&] { return begun().size() == 1; }));
+  go();
+  ASSERT_TRUE(eventually([&] { return begun().size() == 9; }));
+  const std::vector<uint64_t> order = begun();
+  EXPECT_EQ(order[0], many);
+  EXPECT_EQ(order[1], one) << "before the seven that were asked for earlier";
+  EXPECT_EQ(order[2], many);
+}
+
+TEST_F(SlowVideos, ThatAreAskedForTakeTurnsWithThoseOfJobs) {
+  const uint64_t one = finished_job("bob");
+  const auto with_video = [&](uint64_t already) {
+    std::string document = FarmWorld::document(1);
+    document.replace(document.rfind(']'), 1, ", {file: own.mp4}]");
+    const uint64_t job = world.farm.submit_text(
+        document, [](v1::SubmitRequest& request) { request.set_owner("ada"); });
+    const ScriptedWorker worker(world.farm.address, world.farm.script());
+    EXPECT_TRUE(eventually([&] { return world.farm.get(job).job().frames_done() == 1; }));
+    EXPECT_TRUE(eventually([&] { return begun().size() == already; }));
+    return job;
+  };
+  const uint64_t first = with_video(1);
+  const uint64_t second = with_video(1);
+  EXPECT_EQ(ask(one, 0), 202);
+  go();
+  ASSERT_TRUE(eventually([&] { return begun().size() == 3; }));
+  EXPECT_EQ(begun(), (std::vector<uint64_t>{first, one, second}));
 }
 
 }  // namespace
