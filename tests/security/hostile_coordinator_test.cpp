@@ -1,10 +1,13 @@
 // What a coordinator that is hostile, or was taken over, can do to those who fetch from it.
+#include <cstddef>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "cli/client/farm_client.h"
 #include "cli/client/find_job.h"
 #include "core/film/film.h"
+#include "core/film/film_codec.h"
 #include "tests/cli/client/client_testing.h"
 
 namespace hyades::cli {
@@ -79,6 +82,39 @@ TEST_F(HostileCoordinator, FillsNoMemoryByWhatHasNoEnd) {
     EXPECT_TRUE(has(outcome->message, "half of the memory here")) << outcome->message;
   }
   EXPECT_LT(farm_.calls, 40);
+}
+
+// A few bytes that stand for a large film, which `fetch --film` and `watch --display` unpack.
+TEST_F(HostileCoordinator, FillsNoMemoryByAFilmThatIsPackedWell) {
+  add_job("a");
+  core::Film black(core::make_film_layout({}), {0, 0, 256, 256});
+  const std::vector<float> values(size_t{256} * 256 *
+                                  static_cast<size_t>(black.layout().deposited));
+  black.deposit({0, 0, 256, 256}, 0, 16, values);
+  farm_.films.emplace(1, black);
+  const auto unpacked = [&](uint64_t most_bytes) {
+    ClientOptions options;
+    options.peer.address = farm_.address();
+    options.most_bytes = most_bytes;
+    const auto client = FarmClient::open(options);
+    EXPECT_TRUE(client.ok());
+    v1::FilmHeader header;
+    std::string bytes;
+    EXPECT_FALSE((*client)->film(1, 1, header, bytes)) << "it comes whole";
+    EXPECT_LT(bytes.size(), black.memory() / 10);
+    return core::decode_film(std::as_bytes(std::span(bytes)), (*client)->film_limits(bytes)).ok();
+  };
+  EXPECT_FALSE(unpacked(black.memory() / 2));
+  EXPECT_TRUE(unpacked(black.memory() * 4));
+}
+
+// gRPC looks at how long a message is when it has unpacked it.
+TEST_F(HostileCoordinator, SendsNoPackedMessages) {
+  add_job(std::string(1000, 'a'));  // which is shorter when it is packed
+  farm_.packs = true;
+  const Ran ran = run(jobs_command, at({}));
+  EXPECT_EQ(ran.status, kFailed) << ran.out;
+  EXPECT_FALSE(has(ran.out, "ann")) << ran.out;
 }
 
 TEST_F(HostileCoordinator, FillsNoMemoryByFramesThatFail) {

@@ -59,6 +59,7 @@ struct FakeFarm::JobsService : v1::Jobs::Service {
               v1::ListJobsResponse* response) override {
     const std::lock_guard lock(farm.mutex_);
     if (Status s = farm.enter(*context); !s.ok()) return s;
+    if (farm.packs) context->set_compression_algorithm(GRPC_COMPRESS_GZIP);
     if (farm.endless) {
       response->add_jobs()->set_reason(kPadding);
       response->set_next_before(request->before() - 1);

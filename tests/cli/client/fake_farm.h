@@ -52,6 +52,7 @@ class FakeFarm {
   bool damage_upload = false;  ///< the next upload's first byte arrives damaged
   bool damage_fetch = false;   ///< every fetched byte is wrong
   bool endless = false;        ///< lists have always one more page, films one more byte
+  bool packs = false;          ///< answers are compressed
   int calls = 0;
   uint64_t fetched = 0;  ///< bytes that Fetch has sent
   uint64_t uploaded = 0;
