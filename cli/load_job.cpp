@@ -14,12 +14,21 @@ using core::Diagnostics;
 
 std::optional<LoadedJob> read_job_file(const std::string& path, Diagnostics& diagnostics,
                                        const SceneOptions& scene) {
-  auto files = core::JobFiles::open(path, job_file_options(scene));
+  LoadedJob loaded;
+  if (is_blend_file(path)) {
+    auto made = BlendJob::make(path, scene.frames);
+    if (!made) {
+      std::fprintf(stderr, "%s\n", made.error().message.c_str());
+      return std::nullopt;
+    }
+    loaded.blend = std::move(*made);
+  }
+  auto files =
+      core::JobFiles::open(loaded.blend ? loaded.blend->path() : path, job_file_options(scene));
   if (!files) {
     std::fprintf(stderr, "%s\n", files.error().message.c_str());
     return std::nullopt;
   }
-  LoadedJob loaded;
   loaded.files = std::move(*files);
   core::AssetResolver& door = loaded.files->files();
   const auto text = door.open(loaded.files->document());

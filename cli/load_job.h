@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "cli/blend_job.h"
 #include "cli/scene_options.h"
 #include "core/base/assets.h"
 #include "core/base/result.h"
@@ -15,14 +16,15 @@ namespace hyades::cli {
 
 /// A job that has been read and found good, and the door to its files.
 struct LoadedJob {
+  std::unique_ptr<BlendJob> blend;  ///< where the job was made of a .blend: has its files
   core::Job job;
   std::unique_ptr<core::JobFiles> files;
   std::unique_ptr<core::RecordingResolver> assets;  ///< over `files`; knows what was opened
 };
 
-/// Reads `path`: a job, or a scene or mesh of another tool, which gets a camera, ground and sky
-/// that suit it where it has none. Prints what importers left out, and every complaint, to standard
-/// error and returns nothing where there is a complaint.
+/// Reads `path`: a job, a .blend, or a scene or mesh of another tool, which gets a camera, ground
+/// and sky that suit it where it has none. Prints what importers left out, and every complaint, to
+/// standard error and returns nothing where there is a complaint.
 std::optional<LoadedJob> load_job(const std::string& path, const SceneOptions& scene = {});
 
 /// Reads `path` as load_job does, but prints no complaint about the job: they go to `diagnostics`,

@@ -126,7 +126,7 @@ struct Words {
 void declare_what(CLI::App& app, RenderOptions& options, Words& words) {
   app.add_option("job", options.path,
                  "the job (.yaml), or a scene, mesh or script (.glb, .gltf, .pbrt, .obj, .ply, "
-                 ".lua)")
+                 ".lua, and .blend where Blender is installed)")
       ->required();
   declare_scene_options(app, options.scene);
   app.add_option("--frames", options.frames,
@@ -227,6 +227,7 @@ std::optional<int> parse_render_options(int argc, char** argv, RenderOptions& op
       "  hyades render robot.glb --samples 64\n"
       "  hyades render bottles.obj --media media.json\n"
       "  hyades render spiral.lua --set count=200\n"
+      "  hyades render film.blend --frames 1-24 --output out\n"
       "  hyades render job.yaml --frames 7 --tile 2/3 --samples 0-127 --film part.exr\n"
       "Ctrl-C stops; the same command goes on with what is done, to the same bits, also after a "
       "crash.\n"
@@ -255,7 +256,9 @@ std::optional<int> parse_render_options(int argc, char** argv, RenderOptions& op
 }
 
 std::optional<LoadedJob> load_for_render(const RenderOptions& options) {
-  auto loaded = load_job(options.path, options.scene);
+  SceneOptions scene = options.scene;
+  scene.frames = options.frames;
+  auto loaded = load_job(options.path, scene);
   if (!loaded) return std::nullopt;
   core::Job& job = loaded->job;
   if (const auto size = size_in(options.size)) resize(job.film, size->first, size->second);

@@ -19,6 +19,7 @@ struct SceneOptions {
   bool missing_textures = false;  ///< pictures that are not there are magenta, not errors
   bool follow_links = false;      ///< out of scenes' folders too
   std::vector<std::string> set;   ///< of a script: "name=value"
+  std::string frames;  ///< of a .blend: those that are wanted; empty: all. No option here
 };
 
 /// Options --media, --animation, --loop, --missing-textures, --follow-links and --set.

@@ -4,12 +4,15 @@
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
+#include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
 
+#include "cli/blend_job.h"
 #include "cli/client/client_app.h"
 #include "cli/client/show.h"
 #include "cli/client/upload.h"
@@ -56,7 +59,7 @@ struct SubmitOptions {
 void declare_submit(CLI::App& app, SubmitOptions& options) {
   app.add_option("job", options.path,
                  "the job (.yaml), or a scene, mesh or script (.glb, .gltf, .pbrt, .obj, .ply, "
-                 ".lua)")
+                 ".lua, and .blend where Blender is installed)")
       ->required();
   app.add_flag("--watch", options.watch, "stay and show progress until the job has ended");
   app.add_option("--priority", options.priority, "higher goes first")
@@ -196,7 +199,14 @@ int submit_command(int argc, char** argv) {
   SubmitOptions options;
   declare_submit(app.app(), options);
   if (const auto status = app.parse(argc, argv)) return *status;
-  const auto files = core::JobFiles::open(options.path, job_file_options(options.scene));
+  std::unique_ptr<BlendJob> blend;  // has its files until they are uploaded
+  if (is_blend_file(options.path)) {
+    auto made = BlendJob::make(options.path, options.frames);
+    if (!made) return app.report({kBadArguments, made.error().message});
+    blend = std::move(*made);
+  }
+  const auto files =
+      core::JobFiles::open(blend ? blend->path() : options.path, job_file_options(options.scene));
   if (!files) return app.report({kBadArguments, files.error().message});
   core::JobFiles& door = **files;
   const auto package = farm::package_job(door.document(), options.path, door.files());

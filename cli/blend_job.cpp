@@ -1,0 +1,137 @@
+#include "cli/blend_job.h"
+
+#include <stdlib.h>
+
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <ios>
+#include <optional>
+#include <sstream>
+#include <system_error>
+#include <utility>
+
+#include "core/base/child_process.h"
+#include "core/base/machine.h"
+#include "core/base/printable.h"
+#include "core/job/output_path.h"
+
+namespace hyades::cli {
+
+using core::Error;
+using core::Result;
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr size_t kMostTold = 40;
+
+/// Blender's path; an error where it is not here.
+Result<std::string> find_blender() {
+  const char* named = std::getenv("HYADES_BLENDER");
+  const std::string wanted = named != nullptr && *named != '\0' ? named : "blender";
+  if (wanted.find('/') != std::string::npos) {
+    std::error_code none;
+    if (fs::is_regular_file(wanted, none)) return wanted;
+  } else if (auto found = core::find_program(wanted)) {
+    return *found;
+  }
+  return Error{wanted +
+               " was not found: expected Blender (3.4 or later) on PATH, or its path in the "
+               "environment variable HYADES_BLENDER; workers need none"};
+}
+
+/// The add-on's script: of an installation, or of the source tree that was built in; or below the
+/// folder that HYADES_BLENDER_ADDON names.
+Result<std::string> find_script() {
+  const std::string here = core::program_folder();
+  const char* named = std::getenv("HYADES_BLENDER_ADDON");
+  for (const std::string& folder :
+       {std::string(named != nullptr ? named : ""), here + "../../share/hyades/blender",
+        here + "../share/hyades/blender", here + "../../blender"}) {
+    const std::string script = folder + "/hyades_render/export_command.py";
+    std::error_code none;
+    if (!folder.empty() && fs::is_regular_file(script, none)) return script;
+  }
+  return Error{
+      "Hyades' add-on for Blender was not found beside this program: expected the folder that "
+      "holds hyades_render in the environment variable HYADES_BLENDER_ADDON"};
+}
+
+Result<std::string> make_folder() {
+  std::error_code failed;
+  std::string name = (fs::temp_directory_path(failed) / "hyades-blend-XXXXXX").string();
+  if (failed || ::mkdtemp(name.data()) == nullptr) {
+    return Error{"no temporary folder could be made: expected TMPDIR to name one"};
+  }
+  return name;
+}
+
+std::string text_of(const std::string& path) {
+  std::ostringstream text;
+  text << std::ifstream(path, std::ios::binary).rdbuf();
+  return text.str();
+}
+
+/// What Blender complains of in what it has printed; all of that where it is nothing known.
+std::string why_of(const std::string& printed) {
+  const std::string mark = "\nError: ";
+  const size_t at = printed.find(mark);
+  if (at == std::string::npos) return printed;
+  const size_t begin = at + mark.size();
+  const std::string line = printed.substr(begin, printed.find('\n', begin) - begin);
+  return "Blender cannot read it: " + core::printable(line);
+}
+
+void print_notes(const std::string& text) {
+  std::istringstream lines(text);
+  size_t count = 0;
+  for (std::string line; std::getline(lines, line); ++count) {
+    if (count < kMostTold) std::fprintf(stderr, "%s\n", core::printable(line).c_str());
+  }
+  if (count > kMostTold) std::fprintf(stderr, "and %zu more such notes\n", count - kMostTold);
+}
+
+}  // namespace
+
+bool is_blend_file(const std::string& path) { return core::file_extension(path) == ".blend"; }
+
+Result<std::unique_ptr<BlendJob>> BlendJob::make(const std::string& path,
+                                                 const std::string& frames) {
+  // Blender would go on with another scene.
+  if (!std::ifstream(path, std::ios::binary).good()) {
+    return Error{path + ": there is no such file, or it cannot be read"};
+  }
+  const auto blender = find_blender();
+  if (!blender) return blender.error();
+  const auto script = find_script();
+  if (!script) return script.error();
+  auto folder = make_folder();
+  if (!folder) return folder.error();
+  std::unique_ptr<BlendJob> job(new BlendJob(*folder));
+  // Not the user's settings, and none of the scene's own scripts.
+  auto child = core::ChildProcess::start(
+      *blender, {"--background", "--factory-startup", "--disable-autoexec", "-noaudio",
+                 fs::absolute(path).string(), "--python-exit-code", "1", "--python", *script, "--",
+                 *folder, frames});
+  if (!child) return child.error();
+  const core::Status done = child->finish([] { return core::Status(); });
+  std::string why = text_of(*folder + "/error.txt");
+  while (!why.empty() && why.back() == '\n') why.pop_back();
+  if (!why.empty()) return Error{path + ": " + why};
+  std::error_code none;
+  if (!fs::exists(job->path(), none)) {
+    return Error{path + ": " + (done ? "Blender made no job of it" : why_of(done.error().message))};
+  }
+  print_notes(text_of(*folder + "/notes.txt"));
+  return job;
+}
+
+BlendJob::~BlendJob() {
+  std::error_code ignored;
+  fs::remove_all(folder_, ignored);
+}
+
+}  // namespace hyades::cli
