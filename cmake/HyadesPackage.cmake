@@ -38,6 +38,17 @@ endif()
 # The package for Python, where Debian's looks for it.
 install(DIRECTORY python/hyades DESTINATION lib/python3/dist-packages FILES_MATCHING PATTERN "*.py" PATTERN py.typed
         PATTERN __pycache__ EXCLUDE PATTERN .mypy_cache EXCLUDE)
+# The add-on for Blender: its zip for people, and unpacked for `hyades render file.blend`.
+find_program(HYADES_PYTHON python3 PATHS /usr/bin NO_DEFAULT_PATH)
+find_program(HYADES_PYTHON python3)
+install(CODE "
+  set(blender \"${CMAKE_BINARY_DIR}/blender\")
+  file(REMOVE_RECURSE \"\${blender}\")
+  foreach(how \"\" --unpacked)
+    execute_process(COMMAND \"${HYADES_PYTHON}\" \"${CMAKE_SOURCE_DIR}/blender/make_zip\" \${how} \"\${blender}\"
+                    OUTPUT_QUIET COMMAND_ERROR_IS_FATAL ANY)
+  endforeach()
+  file(INSTALL \"\${blender}\" DESTINATION \"\${CMAKE_INSTALL_PREFIX}/${CMAKE_INSTALL_DATADIR}/hyades\")")
 install(FILES README.md DESTINATION ${CMAKE_INSTALL_DOCDIR})
 install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} RENAME copyright)
 install(DIRECTORY docs DESTINATION ${CMAKE_INSTALL_DOCDIR})
@@ -54,7 +65,7 @@ set(CPACK_DEBIAN_PACKAGE_SECTION graphics)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)  # exact dependencies, read off the programs
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_RECOMMENDS ffmpeg)  # for videos
-set(CPACK_DEBIAN_PACKAGE_SUGGESTS "python3 (>= 3.11), python3-numpy")  # for the package hyades
+set(CPACK_DEBIAN_PACKAGE_SUGGESTS "python3 (>= 3.11), python3-numpy, blender (>= 3.4)")  # for the package hyades; for .blend
 set(CPACK_STRIP_FILES ON)
 if(HYADES_FARM)
   # preinst knows which stores these programs can read: one version for each step of the schema.

@@ -50,6 +50,7 @@ class Refiner:
         self._job: hyades.Job | None = None
         self._view: View | None = None
         self._asked = 0  # how often something was asked for
+        self._ended = 0  # which of those was rendered, or refused, last
         self._closed = False
         self._picture: numpy.ndarray | None = None
         self._number = 0
@@ -70,6 +71,11 @@ class Refiner:
         """The newest picture (height, width, 4), row 0 at the top, and its number."""
         with self._wake:
             return self._number, self._picture
+
+    def is_done(self) -> bool:
+        """Whether what was asked for last has all samples, or was refused."""
+        with self._wake:
+            return self._ended == self._asked
 
     def words(self) -> str:
         """How it gets on."""
@@ -99,6 +105,8 @@ class Refiner:
                     self._render(job, view, done)
                 except (hyades.HyadesError, OSError, ValueError) as error:
                     self._say(str(error))
+                with self._wake:
+                    self._ended = done
         finally:
             shutil.rmtree(self._folder, ignore_errors=True)
 

@@ -1,7 +1,10 @@
 """The add-on of the source tree, switched on, and small scenes for it."""
 
+import concurrent.futures
 import pathlib
+import queue
 import tempfile
+import threading
 import unittest
 
 import bpy
@@ -10,12 +13,37 @@ import hyades
 import hyades_render
 
 ON = False
+_wanted: queue.Queue = queue.Queue()
+
+
+def on_main(do):
+    """What `do` returns, done by the thread that Blender runs in. Tests in a window run in another one, so that Blender
+    draws as it always does."""
+    if threading.current_thread() is threading.main_thread():
+        return do()
+    result: concurrent.futures.Future = concurrent.futures.Future()
+    _wanted.put((do, result))
+    return result.result()
+
+
+def serve() -> float:
+    """Does what tests want of the main thread: a timer of Blender."""
+    while not _wanted.empty():
+        do, result = _wanted.get()
+        try:
+            result.set_result(do())
+        except BaseException as error:
+            result.set_exception(error)
+    return 0.01  # seconds until it looks again
 
 
 class AddOnTest(unittest.TestCase):
     """A test with the add-on, a fresh scene of a lit cube, and a folder."""
 
     def setUp(self) -> None:
+        on_main(self._begin)
+
+    def _begin(self) -> None:
         global ON
         if bpy.app.background:  # in a window it takes away what runs the tests; one test has one of its own
             bpy.ops.wm.read_factory_settings()

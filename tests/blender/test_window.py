@@ -7,7 +7,7 @@ import unittest
 
 import bpy
 import numpy
-from addon import AddOnTest
+from addon import AddOnTest, on_main
 
 from hyades_render import viewport
 
@@ -15,6 +15,9 @@ from hyades_render import viewport
 class Window(AddOnTest):
     def setUp(self) -> None:
         super().setUp()
+        on_main(self.prepare)
+
+    def prepare(self) -> None:
         self.scene.hyades.preview_samples = 4
         self.scene.world.color = (0, 0, 0)
         self.window = bpy.context.window_manager.windows[0]
@@ -24,12 +27,10 @@ class Window(AddOnTest):
         self.space.show_gizmo = self.space.show_region_header = False
         self.space.show_region_toolbar = self.space.show_region_tool_header = False
 
-    def draw(self, until) -> None:
-        """Draws the window again and again."""
-        for _ in range(400):
-            with bpy.context.temp_override(window=self.window):
-                bpy.ops.wm.redraw_timer(type="DRAW_WIN_SWAP", iterations=1)
-            if until():
+    def wait(self, until) -> None:
+        """Until Blender's window has got so far."""
+        for _ in range(1200):
+            if on_main(until):
                 return
             time.sleep(0.05)
         self.fail("it does not come")
@@ -49,7 +50,7 @@ class Window(AddOnTest):
     def refined(self) -> bool:
         """Whether the newest picture has all samples and is drawn."""
         for one in list(viewport._open):
-            if one._refiner is not None and one._refiner.words().startswith("100%"):
+            if one._refiner is not None and one._refiner.is_done():
                 return one._refiner.picture()[0] == one._texture_number
         return False
 
@@ -58,22 +59,29 @@ class Window(AddOnTest):
         found = subprocess.run(["pgrep", "-P", str(os.getpid()), "hyades"], stdout=subprocess.PIPE, text=True)
         return found.stdout.split()
 
+    def change(self, what) -> None:
+        """Changes the scene, and waits for the picture of it."""
+        on_main(what)
+        self.wait(lambda: not self.refined())
+        self.wait(self.refined)
+
+    def place_cube(self, x: float) -> None:
+        bpy.data.objects["Cube"].location.x = x
+
+    def shade(self, kind: str) -> None:
+        self.space.shading.type = kind
+
     def test_the_viewport_refines_follows_and_ends(self) -> None:
-        self.space.shading.type = "RENDERED"
-        self.draw(self.refined)
-        first = self.shown()
+        self.change(lambda: self.shade("RENDERED"))
+        first = on_main(self.shown)
         self.assertGreater(float(first[:, :, :3].max() - first[:, :, :3].min()), 0.2)
-        bpy.data.objects["Cube"].scale = (0.01, 0.01, 0.01)
-        self.draw(lambda: not self.refined())
-        self.draw(self.refined)
-        second = self.shown()
+        self.change(lambda: self.place_cube(1000))
+        second = on_main(self.shown)
         self.assertLess(float(second[:, :, :3].max() - second[:, :, :3].min()), 0.1)
-        bpy.data.objects["Cube"].scale = (1, 1, 1)
-        self.draw(lambda: not self.refined())
-        self.draw(self.refined)
-        numpy.testing.assert_allclose(self.shown(), first, atol=0.02)
-        self.space.shading.type = "SOLID"
-        self.draw(lambda: not self.children())
+        self.change(lambda: self.place_cube(0))
+        numpy.testing.assert_allclose(on_main(self.shown), first, atol=0.02)
+        on_main(lambda: self.shade("SOLID"))
+        self.wait(lambda: not self.children())
         self.assertEqual([one for one in viewport._open if one._refiner is not None], [])
 
 
