@@ -6,6 +6,8 @@ import re
 from dataclasses import dataclass
 from typing import Any
 
+from .printable import printable_lines
+
 _COMPLAINT = re.compile(r"^(?P<file>[^\n]+?):(?P<line>\d+):(?:(?P<column>\d+):)? (?P<message>.*)$")
 
 
@@ -59,12 +61,13 @@ class FarmError(HyadesError):
     """What a coordinator answered instead of what was asked for, or that it did not answer.
 
     `code` is gRPC's name for it in small letters (`not_found`, `unauthenticated`, `unavailable`, ...),
-    `missing` the SHA-256 of files that it wants first.
+    `missing` the SHA-256 of files that it wants first. The message steers no terminal, whatever it answered:
+    '?' stands for what is not printable.
     """
 
     def __init__(self, code: str, message: str, missing: tuple[str, ...] = ()) -> None:
-        super().__init__(message)
-        self.code = code
+        super().__init__(printable_lines(message))
+        self.code = printable_lines(code)
         self.missing = missing
 
 

@@ -14,6 +14,7 @@ from typing import Any, TypeAlias
 import numpy
 
 from .exr_header import Channel, Header, read_headers
+from .machine import usable_memory
 
 Array = Any
 Window: TypeAlias = tuple[int, int, int, int]
@@ -55,6 +56,10 @@ def decode_exr(data: bytes, part: int = 0) -> Layers:
     header = headers[part]
     if header.compression not in _LINES:
         raise ValueError("it is compressed in another way than Hyades does it")
+    x0, y0, x1, y1 = header.data_window
+    wanted = 8 * (x1 - x0) * (y1 - y0) * len(header.channels)  # as it is read, and as it is returned
+    if wanted > usable_memory() // 2:
+        raise ValueError(f"its pixels would take {wanted / (1 << 30):.1f} GiB of memory, more than half of what there is")
     at += 8 * sum(_chunk_count(other) for other in headers[:part])
     offsets = struct.unpack_from(f"<{_chunk_count(header)}Q", data, at)
     planes = _read_planes(data, header, offsets, len(headers) > 1)

@@ -17,7 +17,7 @@ class FarmProcess:
     def __init__(self, test: unittest.TestCase, folder: pathlib.Path, *options: str) -> None:
         self._folder = folder
         self._options = options
-        self._listen = self._http = "127.0.0.1:0"
+        self.listen = self._http = "127.0.0.1:0"  # listen: where workers and commands find it
         self._processes: list[subprocess.Popen] = []
         folder.mkdir(parents=True)
         test.addCleanup(self._end)
@@ -28,16 +28,16 @@ class FarmProcess:
         log = self._folder / "coordinator.log"
         log.unlink(missing_ok=True)
         (self._folder / "data/address").unlink(missing_ok=True)
-        command = ["coordinator", "--data", str(self._folder / "data"), "--listen", self._listen, "--http", self._http]
+        command = ["coordinator", "--data", str(self._folder / "data"), "--listen", self.listen, "--http", self._http]
         self.coordinator = self._run([*command, *self._options], log)
         found = self._wait_for(lambda: re.search(r"dashboard at (https?)://([^\s/]+)", log.read_text()))
         self.address = f"{found[1]}://{found[2]}"
         self._http = found[2]
-        self._listen = self._wait_for(lambda: re.search(r"listening on (\S+)", log.read_text()))[1]
+        self.listen = self._wait_for(lambda: re.search(r"listening on (\S+)", log.read_text()))[1]
 
     def worker(self) -> subprocess.Popen:
         cache = self._folder / f"cache-{len(self._processes)}"
-        command = ["worker", "--coordinator", self._listen, "--threads", "1", "--cache", str(cache)]
+        command = ["worker", "--coordinator", self.listen, "--threads", "1", "--cache", str(cache)]
         return self._run(command, self._folder / "workers.log")
 
     def kill(self, process: subprocess.Popen) -> None:

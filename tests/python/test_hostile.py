@@ -6,12 +6,15 @@ import os
 import pathlib
 import tempfile
 import unittest
+from unittest import mock
 from urllib.parse import parse_qs, urlsplit
 
 import environment  # noqa: F401
 from fake_farm import FakeFarm, Request
 
 import hyades
+from hyades.exr import decode_exr
+from hyades.exr_header import Header
 from hyades.farm import upload
 from hyades.farm.events import parse_events
 
@@ -145,7 +148,7 @@ class Calls(unittest.TestCase):
                 hyades.Farm(address or "http://", insecure=True)
 
     def test_what_is_worth_another_try_is_tried_again(self) -> None:
-        answers = [None, (503, {}, b"{}"), ok({"jobs": 5})]
+        answers = [None, (503, {}, b"{}"), ok({"version": "1", "jobs": 5})]
         fake = FakeFarm(self, lambda request: answers.pop(0))
         self.assertEqual(hyades.Farm(fake.address, patience=10).info()["jobs"], 5)
         refused = json.dumps({"error": {"code": "permission_denied", "message": "a viewer may not"}}).encode()
@@ -162,6 +165,68 @@ class Calls(unittest.TestCase):
     def test_events_are_read_as_the_standard_has_them(self) -> None:
         lines = [b":\n", b"\n", b"event: a\r\n", b'data: {"x":\n', b"data: 1}\n", b"id: 7\n", b"\n", b"data: 2\n", b"\n", b"event: b\n", b"data: 3\n"]
         self.assertEqual(list(parse_events(lines)), [("a", {"x": 1}), ("message", 2)])
+
+
+class Bounds(unittest.TestCase):
+    """Whatever it answers, the memory here is bounded, and what is raised is a FarmError that a terminal can show."""
+
+    def refused(self, answer, call, code: str, words: str) -> None:
+        fake = FakeFarm(self, answer if callable(answer) else lambda request: answer)
+        with self.assertRaisesRegex(hyades.FarmError, words) as caught:
+            call(hyades.Farm(fake.address, patience=2))
+        self.assertEqual(caught.exception.code, code)
+
+    def test_answers_have_an_end(self) -> None:
+        with mock.patch.object(hyades.farm.http, "MOST_JSON", 1000):
+            self.refused((200, {}, b"[" + b" " * 1000), lambda farm: farm.info(), "resource_exhausted", "an answer of more than")
+
+    def test_what_is_no_answer_is_told(self) -> None:
+        for body in (b"{", b"[" * 100_000, b"5", b'{"jobs": 5}', b'{"jobs": [5], "next_before": 0}', b'{"jobs": [], "next_before": "1"}',
+                     b'{"jobs": [{"id": "x"}], "next_before": 0}'):  # fmt: skip
+            with self.subTest(body[:40]):
+                self.refused((200, {}, body), lambda farm: list(farm.jobs()), "unknown", "answer")
+
+    def test_lists_that_do_not_go_on_end(self) -> None:
+        self.refused(ok({"jobs": [], "next_before": 7}), lambda farm: list(farm.jobs()), "unknown", "does not go on")
+        row = {"id": 3, "time_ms": 1, "level": "info", "text": "again"}
+        for answer in ({"lines": [row], "more": True}, {"lines": [], "more": True}):
+            self.refused(ok(answer), lambda farm: list(farm.logs(1)), "unknown", "does not go on")
+        listed = {"outputs": [output("a.png")], "after": 1, "more": True}
+        self.refused(ok(listed), lambda farm: list(farm.outputs(1)), "unknown", "does not go on")
+
+    def film(self, width: int, height: int, planes: bytes) -> tuple:
+        head = {"width": width, "height": height, "channels": ["R"], "layer": "beauty", "layers": ["beauty"], "samples": 1, "exact": True}
+        return 200, {}, json.dumps(head).encode() + b"\n" + planes
+
+    def test_films_take_no_more_than_they_may(self) -> None:
+        fake = FakeFarm(self, lambda request: self.film(2, 2, b"\0\0" * 4))
+        self.assertEqual(hyades.Farm(fake.address, patience=2).film(1, 1).array.shape, (2, 2))
+        small = lambda farm: farm.film(1, 1, most_bytes=1000)
+        self.refused(self.film(100, 100, b""), small, "resource_exhausted", "picture of 100 x 100")
+        self.refused(self.film(1 << 40, 1 << 40, b""), lambda farm: farm.film(1, 1), "resource_exhausted", "which takes memory")
+        for size in (0, -1, "2"):
+            self.refused(self.film(size, 2, b"\0" * 8), small, "unknown", "picture|answer")
+        self.refused(self.film(2, 2, b"\0" * 6), small, "unknown", "6 bytes of a picture, expected 8")
+        self.refused(self.film(2, 2, b"\0" * 10), small, "resource_exhausted", "an answer of more than")
+
+    def test_pictures_take_no_more_than_there_is(self) -> None:
+        head = Header.written(["R", "G", "B"], 2, 1 << 14, 1 << 14)
+        with mock.patch("hyades.exr.usable_memory", lambda: 1 << 32), self.assertRaisesRegex(ValueError, "6.0 GiB of memory"):
+            decode_exr(head + b"\0" * 8 * (1 << 14))
+
+    def test_events_have_an_end(self) -> None:
+        with mock.patch.object(hyades.farm.events, "_MOST_EVENT", 1000):
+            with self.assertRaisesRegex(hyades.FarmError, "an event of more than 1000 bytes"):
+                list(parse_events([b"data: " + b"x" * 600] * 2))
+            with self.assertRaisesRegex(hyades.FarmError, "JSON"):
+                list(parse_events([b"data: [\n", b"\n"]))
+
+    def test_messages_steer_no_terminal(self) -> None:
+        said = json.dumps({"error": {"code": "not_\x1b[2Jfound", "message": "no \u202e job\x9b31m\nat all"}}).encode()
+        fake = FakeFarm(self, lambda request: (404, {}, said))
+        with self.assertRaises(hyades.FarmError) as caught:
+            hyades.Farm(fake.address, patience=2).job(1)
+        self.assertEqual((str(caught.exception), caught.exception.code), ("no ? job?31m\nat all", "not_?[2Jfound"))
 
 
 class Uploads(unittest.TestCase):
@@ -214,6 +279,21 @@ class Uploads(unittest.TestCase):
         self.stored, self.trouble = b"", [None, self.forget] * 9
         with self.assertRaises(hyades.FarmError):
             self.upload()
+
+    def test_odd_places_in_a_file_are_refused(self) -> None:
+        for offset in (-1, 36, 1 << 70, "0", None):
+            with self.subTest(offset), self.assertRaisesRegex(hyades.FarmError, "coordinator"):
+                self.stored = b""
+                self.trouble = [lambda offset=offset: ok({"offset": offset, "complete": False})]
+                self.upload()
+        with self.assertRaisesRegex(hyades.FarmError, "does not get on with it"):
+            self.stored = b""
+            self.trouble = [self.stuck] * 9
+            self.upload()
+
+    def stuck(self):
+        self.stored = b""
+        return ok({"offset": 0, "complete": False})
 
 
 if __name__ == "__main__":

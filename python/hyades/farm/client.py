@@ -14,7 +14,9 @@ from ..described import Key
 from ..errors import FarmError
 from ..exr import Layers
 from ..job import Job
+from ..machine import usable_memory
 from ..program import PathLike
+from .answers import no_end, part
 from .events import JobEvents
 from .fetch import Fetcher
 from .films import FilmLayer, read_film
@@ -101,20 +103,23 @@ class Farm:
             message["frames"] = [_frame_range(frames)]
         with packed(job, program) as package:
             answer = submit(self._http, package, message, on_bytes)
-        return read_state(JobState, answer["job"])
+        return read_state(JobState, part(answer, "job", dict))
 
     def jobs(self, *, ended: bool = False, owner: str | None = None) -> Iterator[JobState]:
         """Open jobs, the newest first; with `ended` also those that have ended."""
-        before = None
+        before: int | None = None
         while before != 0:
             query = {"ended": ended, "owner": owner, "limit": 1000, "before": before}
             answer = self._http.call("GET", "/api/v1/jobs", query=query)
-            yield from (read_state(JobState, row) for row in answer["jobs"])
-            before = answer["next_before"]
+            rows, following = part(answer, "jobs", list), part(answer, "next_before", int)
+            yield from (read_state(JobState, row) for row in rows)
+            if following != 0 and (not rows or (before is not None and following >= before)):
+                raise no_end()
+            before = following
 
     def job(self, job: JobId) -> JobState:
         """A job as it is now."""
-        return read_state(JobState, self._http.call("GET", _path(job))["job"])
+        return read_state(JobState, part(self._http.call("GET", _path(job)), "job", dict))
 
     def find(self, name: str) -> JobState:
         """The newest job of this name."""
@@ -167,7 +172,7 @@ class Farm:
 
     def explain(self, job: JobId) -> list[str]:
         """Why it does or does not get on, the weightiest reason first."""
-        return [str(reason) for reason in self._http.call("GET", _path(job, "explain"))["reasons"]]
+        return [str(reason) for reason in part(self._http.call("GET", _path(job, "explain")), "reasons", list)]
 
     def logs(self, job: JobId) -> Iterator[LogLine]:
         """What has happened to it, oldest first."""
@@ -209,30 +214,46 @@ class Farm:
                 told = after
         return list(here.values())
 
-    def film(self, job: JobId, frame: int, layer: str = "beauty", *, width: int | None = None) -> FilmLayer:
-        """A layer of a frame as it is now, also in mid-render; averaged down to `width` pixels."""
+    def film(
+        self,
+        job: JobId,
+        frame: int,
+        layer: str = "beauty",
+        *,
+        width: int | None = None,
+        most_bytes: int | None = None,
+    ) -> FilmLayer:
+        """A layer of a frame as it is now, also in mid-render; averaged down to `width` pixels. FarmError where it
+        would take more than `most_bytes` of memory, or more than half of what there is."""
         query = {"format": "half", "layer": layer, "width": width}
+        most = usable_memory() // 2 if most_bytes is None else most_bytes
 
-        def once() -> bytes:
+        def once() -> FilmLayer:
             with self._http.open("GET", _path(job, f"frames/{int(frame)}/picture"), query=query) as answer:
-                return answer.read()
+                return read_film(answer, most)
 
-        return read_film(self._http.patiently(once))
+        return self._http.patiently(once)
 
-    def films(self, job: JobId, frame: int, *, width: int | None = None) -> Layers:
-        """All layers of a frame as it is now."""
-        first = self.film(job, frame, width=width)
+    def films(
+        self, job: JobId, frame: int, *, width: int | None = None, most_bytes: int | None = None
+    ) -> Layers:
+        """All layers of a frame as it is now; `most_bytes` is for all of them together."""
+        left = usable_memory() // 2 if most_bytes is None else most_bytes
+        first = self.film(job, frame, width=width, most_bytes=left)
         layers = Layers({"samples": first.samples, "exact": first.exact})
-        for layer in first.layers:
-            same = layer == first.layer
-            layers[layer] = (first if same else self.film(job, frame, layer, width=width)).array
+        left -= first.array.nbytes
+        for layer in dict.fromkeys(first.layers):
+            found = first if layer == first.layer else self.film(job, frame, layer, width=width, most_bytes=left)
+            layers[layer] = found.array
+            left -= found.array.nbytes if found is not first else 0
         return layers
 
     # Workers, and the coordinator itself.
 
     def workers(self) -> list[WorkerState]:
         """All workers, also those that are gone for less than an hour."""
-        return [read_state(WorkerState, row) for row in self._http.call("GET", "/api/v1/workers")["workers"]]
+        rows = part(self._http.call("GET", "/api/v1/workers"), "workers", list)
+        return [read_state(WorkerState, row) for row in rows]
 
     def drain(self, worker: WorkerId) -> WorkerState:
         """It delivers what it has and leaves."""
@@ -248,6 +269,7 @@ class Farm:
     def info(self) -> dict[str, Any]:
         """Who is there, which versions: `Info` of openapi.yaml."""
         answer: dict[str, Any] = self._http.call("GET", "/api/v1/info")
+        part(answer, "version", str)
         return answer
 
     def _owner(self) -> str:
@@ -265,9 +287,12 @@ class Farm:
         while more:
             query = {"after": after, "frame": frame}
             answer = self._http.call("GET", _path(job, "outputs"), query=query)
-            after, more = answer["after"], answer["more"]
-            for row in answer["outputs"]:
-                yield after, read_state(OutputFile, row)
+            rows, following, more = part(answer, "outputs", list), part(answer, "after", int), part(answer, "more", bool)
+            for row in rows:
+                yield following, read_state(OutputFile, row)
+            if more and (not rows or following <= after):
+                raise no_end()
+            after = following
 
     def _steer(self, job: JobId, action: str) -> JobState:
         return read_state(JobState, self._http.call("POST", _path(job, action)))
@@ -277,14 +302,16 @@ class Farm:
         return read_state(WorkerState, self._http.call("POST", path, message={"reason": reason}))
 
     def _pages(self, path: str, rows: str, kind: type[Any], query: dict[str, Any]) -> Iterator[Any]:
-        after = None
-        while True:
+        after: int | None = None
+        more = True
+        while more:
             answer = self._http.call("GET", path, query={**query, "after": after})
-            for row in answer[rows]:
+            before, more = after, part(answer, "more", bool)
+            for row in part(answer, rows, list):
                 yield read_state(kind, row)
-                after = row["id"]
-            if not answer["more"]:
-                return
+                after = part(row, "id", int)
+            if more and (after is None or (before is not None and after <= before)):
+                raise no_end()
 
 
 def _id(thing: Any) -> int:

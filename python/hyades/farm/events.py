@@ -3,34 +3,42 @@
 from __future__ import annotations
 
 import http.client
-import json
 import time
 from collections.abc import Iterable, Iterator
 from typing import Any
 
 from ..errors import FarmError
+from ..machine import usable_memory
+from .answers import decoded, part, too_much
 from .http import Http
 from .states import Change, FrameState, JobState, read_state
 
 _SILENCE = 60.0  # seconds; a coordinator says something every 15
 _STREAM_ENDED = 0.5  # seconds; a coordinator that ends it in order is about to stop
+# Bytes of an event, of which Python makes up to thirty times as many. The first tells all frames of a job.
+_MOST_EVENT = max(8 << 20, usable_memory() // 64)
+_MOST_FRAMES = 1_000_000  # that a job may have
 
 
 def parse_events(lines: Iterable[bytes]) -> Iterator[tuple[str, Any]]:
-    """Names and data of events as their lines come."""
-    name, data = "message", list[str]()
+    """Names and data of events as their lines come; of a line that is too long its beginning is enough.
+    FarmError where an event is too long, or its data are no JSON."""
+    name, data, size = "message", list[str](), 0
     for raw in lines:
+        if size + len(raw) > _MOST_EVENT:
+            raise too_much("an event", _MOST_EVENT)
         line = raw.decode("utf-8", "replace").rstrip("\r\n")
         field, _, value = line.partition(":")
         value = value.removeprefix(" ")
         if not line:
             if data:
-                yield name, json.loads("\n".join(data))
-            name, data = "message", []
+                yield name, decoded("\n".join(data))
+            name, data, size = "message", [], 0
         elif field == "event":
             name = value
         elif field == "data":
             data.append(value)
+            size += len(raw)
 
 
 class JobEvents:
@@ -40,7 +48,7 @@ class JobEvents:
     def __init__(self, farm: Http, job: int) -> None:
         self._http = farm
         self._path = f"/api/v1/jobs/{job}/events"
-        self._frames: dict[int, FrameState] = {}
+        self._frames: dict[int, int] = {}  # hashes of what was told: the rows themselves may be of any size
         self._count = 0
 
     def __iter__(self) -> Iterator[Change]:
@@ -65,11 +73,13 @@ class JobEvents:
     def _connect(self) -> _Stream:
         return _Stream(self._http, self._path)
 
-    def _change(self, data: dict[str, Any]) -> Change:
-        rows = [read_state(FrameState, row) for row in data["frames"]]
-        new = tuple(frame for frame in rows if self._frames.get(frame.id) != frame)
-        self._frames.update((frame.id, frame) for frame in new)
-        return Change(read_state(JobState, data["job"]), new)
+    def _change(self, data: Any) -> Change:
+        rows = [read_state(FrameState, row) for row in part(data, "frames", list)]
+        new = tuple(frame for frame in rows if self._frames.get(frame.id) != hash(frame))
+        self._frames.update((frame.id, hash(frame)) for frame in new)
+        if len(self._frames) > _MOST_FRAMES:
+            raise FarmError("resource_exhausted", f"the coordinator tells of more than {_MOST_FRAMES} frames of a job")
+        return Change(read_state(JobState, part(data, "job", dict)), new)
 
 
 class _Stream:
@@ -86,5 +96,5 @@ class _Stream:
         self._context.__exit__(None, None, None)
 
     def __iter__(self) -> Iterator[bytes]:
-        while line := self._answer.readline():
+        while line := self._answer.readline(_MOST_EVENT + 1):
             yield line

@@ -2,13 +2,18 @@
 
 from __future__ import annotations
 
-import json
+import http.client
 from dataclasses import dataclass
 from typing import Any
 
 import numpy
 
+from ..errors import FarmError
 from ..picture import Picture
+from .answers import decoded, part, read_bounded, too_much
+
+_MOST_HEAD = 1 << 20  # bytes of the line that tells what follows
+_BYTES_PER_VALUE = 6  # a half float, and the float that is made of it
 
 
 @dataclass(frozen=True)
@@ -34,19 +39,36 @@ class FilmLayer:
         return self.picture._repr_png_()
 
 
-def read_film(data: bytes) -> FilmLayer:
-    """What `format=half` of a frame's picture answers."""
-    line, _, planes = data.partition(b"\n")
-    head = json.loads(line)
-    channels, height, width = tuple(head["channels"]), int(head["height"]), int(head["width"])
+def read_film(answer: http.client.HTTPResponse, most: int) -> FilmLayer:
+    """What `format=half` of a frame's picture answers, where it takes at most `most` bytes of memory. FarmError."""
+    line = answer.readline(_MOST_HEAD)
+    if not line:
+        raise http.client.IncompleteRead(b"")
+    head = decoded(line)
+    channels, layers = (_texts(head, name) for name in ("channels", "layers"))
+    height, width = part(head, "height", int), part(head, "width", int)
+    if not channels or height < 1 or width < 1:
+        raise FarmError("unknown", f"the coordinator sends a picture of {width} x {height} pixels, expected some")
     count = len(channels) * height * width
-    halves = numpy.frombuffer(planes, "<f2", count).reshape(len(channels), height, width)
+    if count * _BYTES_PER_VALUE > most:
+        raise too_much(f"a picture of {width} x {height} pixels, which takes memory", most)
+    planes = read_bounded(answer, 2 * count)
+    if len(planes) < 2 * count:
+        raise FarmError("unknown", f"the coordinator sends {len(planes)} bytes of a picture, expected {2 * count}")
+    halves = numpy.frombuffer(planes, "<f2").reshape(len(channels), height, width)
     array = halves.astype(numpy.float32).transpose(1, 2, 0)
     return FilmLayer(
         array[:, :, 0] if len(channels) == 1 else array,
-        str(head["layer"]),
+        part(head, "layer", str),
         channels,
-        tuple(head["layers"]),
-        int(head["samples"]),
-        bool(head["exact"]),
+        layers,
+        part(head, "samples", int),
+        part(head, "exact", bool),
     )
+
+
+def _texts(head: object, name: str) -> tuple[str, ...]:
+    texts = part(head, name, list)
+    if not all(isinstance(text, str) for text in texts):
+        raise FarmError("unknown", f"the coordinator's picture has '{name}' that are no texts")
+    return tuple(texts)

@@ -16,6 +16,7 @@ from typing import Any, TypeVar
 from urllib.parse import urlencode, urlsplit
 
 from ..errors import FarmError
+from .answers import MOST_JSON, decoded, part, read_bounded
 
 _T = TypeVar("_T")
 _FIRST_PATIENCE = 3.0  # seconds, for a coordinator that has never answered
@@ -67,8 +68,8 @@ class Http:
 
         def once() -> Any:
             with self.open(method, path, query=query, body=body, headers=headers, timeout=timeout) as answer:
-                data = answer.read()
-            return json.loads(data) if data else None
+                data = read_bounded(answer, MOST_JSON)
+            return decoded(data) if data else None
 
         return self.patiently(once)
 
@@ -149,16 +150,24 @@ def _failure(answer: http.client.HTTPResponse) -> Exception:
     if 300 <= answer.status < 400:
         return FarmError("moved", f"the coordinator sends elsewhere (status {answer.status}), which is not followed")
     data = answer.read(1 << 20)
+    said: dict[str, Any]
     try:
-        said = json.loads(data)["error"]
-        code, message = str(said["code"]), str(said["message"])
-    except (ValueError, KeyError, TypeError):
+        said = part(decoded(data), "error", dict)
+        code, message = part(said, "code", str), part(said, "message", str)
+    except FarmError:
         said, code = {}, "unavailable" if answer.status in _AGAIN else "unknown"
         message = f"status {answer.status}: {data[:200].decode('utf-8', 'replace')}"
-    error = FarmError(code, message, tuple(map(str, said.get("missing", ()))))
+    missing = part(said, "missing", list) if "missing" in said else []
+    error = FarmError(code, message, tuple(digest for digest in missing if isinstance(digest, str)))
     if answer.status in _AGAIN or "retry_after_ms" in said:
-        return _Again(error, min(float(said.get("retry_after_ms", 0)) / 1000, _LONGEST_WAIT))
+        return _Again(error, _wait_asked(said.get("retry_after_ms", 0)))
     return error
+
+
+def _wait_asked(milliseconds: Any) -> float:
+    """Seconds; 0 where it is no time to wait."""
+    good = isinstance(milliseconds, (int, float)) and milliseconds > 0
+    return float(min(milliseconds, 1000 * _LONGEST_WAIT)) / 1000 if good else 0.0
 
 
 def _default_address() -> str:

@@ -1,6 +1,6 @@
 """Which names of files a coordinator may give: it chooses them, and is not to be trusted with a disk.
 
-The same rules as of `hyades fetch`: core/job/output_path.h, core/base/printable.h.
+The same rules as of `hyades fetch`: core/job/output_path.h.
 """
 
 from __future__ import annotations
@@ -9,18 +9,7 @@ import os
 import posixpath
 
 from ..errors import FileRefused
-
-# Characters that are not seen, steer terminals, or turn the direction of text.
-_DECEIVING = [
-    (0x0000, 0x001F), (0x007F, 0x009F), (0x00AD, 0x00AD), (0x061C, 0x061C), (0x180E, 0x180E),
-    (0x200B, 0x200B), (0x200E, 0x200F), (0x2028, 0x202E), (0x2060, 0x2064), (0x2066, 0x2069),
-    (0xFEFF, 0xFEFF), (0xFFF9, 0xFFFB), (0xE0000, 0xE007F), (0xD800, 0xDFFF),
-]  # fmt: skip
-
-
-def is_printable(text: str) -> bool:
-    return not any(first <= ord(c) <= last for c in text for first, last in _DECEIVING)
-
+from ..printable import is_printable
 
 def check_name(path: str, hidden: bool = False) -> None:
     """FileRefused where `path`, as a coordinator names it, must not be written below a folder."""

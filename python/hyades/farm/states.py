@@ -9,16 +9,37 @@ from collections.abc import Mapping
 from dataclasses import dataclass, fields
 from typing import Any, TypeVar
 
+from ..errors import FarmError
+
 _State = TypeVar("_State")
 
 ENDED = ("done", "failed", "cancelled")
 
+_PLAIN: dict[str, tuple[type, ...]] = {"int": (int,), "float": (int, float), "bool": (bool,), "str": (str,)}
 
-def read_state(kind: type[_State], row: Mapping[str, Any]) -> _State:
-    """A row of an answer as one of the classes below."""
-    known = {field.name for field in fields(kind)}
-    values = {name: tuple(v) if isinstance(v, list) else v for name, v in row.items() if name in known}
-    return kind(**values)
+
+def read_state(kind: type[_State], row: Any) -> _State:
+    """A row of an answer as one of the classes below; FarmError where it is none."""
+    known = {field.name: str(field.type) for field in fields(kind)}
+    told = row if isinstance(row, dict) else {}
+    values = {name: tuple(v) if isinstance(v, list) else v for name, v in told.items() if name in known}
+    odd = [name for name, value in values.items() if not _is(known[name], value)]
+    try:
+        if not odd:
+            return kind(**values)
+    except TypeError as error:  # one that must be there is not
+        odd = [str(error)]
+    raise FarmError("unknown", f"the coordinator's answer has no {kind.__name__} where one was expected: {odd}")
+
+
+def _is(hint: str, value: Any) -> bool:
+    """Whether a value is of the type that a field's hint names."""
+    if isinstance(value, tuple):
+        inner = str if hint == "tuple[str, ...]" else dict
+        return hint.startswith("tuple") and all(isinstance(item, inner) for item in value)
+    if value is None:
+        return hint.endswith("| None")
+    return isinstance(value, _PLAIN.get(hint.removesuffix(" | None"), ()))
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -15,6 +15,7 @@ from ..errors import FarmError, HyadesError, JobError
 from ..job import Document, Job
 from ..job_types.objects import GltfScene, Group, ObjScene, Object, PbrtScene
 from ..program import PathLike, files_of
+from .answers import part
 from .http import Http
 
 _PIECE = 8 << 20  # the most that a coordinator takes at once
@@ -110,11 +111,20 @@ def _missing(http: Http, files: Sequence[JobFile]) -> list[tuple[str, int]]:
     for at in range(0, len(files), _MOST_ASKED):
         asked = {file.sha256: file for file in files[at : at + _MOST_ASKED]}
         question = {"files": [{"sha256": f.sha256, "size": f.size} for f in asked.values()]}
-        for row in http.call("POST", "/api/v1/assets/missing", message=question)["missing"]:
-            if row["sha256"] not in asked:
-                raise FarmError("unknown", "the coordinator asks for a file that the job does not have")
-            found.append((row["sha256"], min(int(row["offset"]), asked[row["sha256"]].size)))
+        for row in part(http.call("POST", "/api/v1/assets/missing", message=question), "missing", list):
+            file = asked.pop(part(row, "sha256", str), None)
+            if file is None:
+                raise FarmError("unknown", "the coordinator asks for a file that the job does not have, or for one twice")
+            found.append((file.sha256, _offset(row, file)))
     return found
+
+
+def _offset(answer: Any, file: JobFile) -> int:
+    """From where on a coordinator wants a file; FarmError where that is no place in it."""
+    offset = part(answer, "offset", int)
+    if not 0 <= offset <= file.size:
+        raise FarmError("unknown", f"the coordinator wants {file.path} from byte {offset} on, expected 0 to {file.size}")
+    return offset
 
 
 def _upload(http: Http, file: JobFile, offset: int, moved: Callable[[int], None]) -> None:
@@ -139,9 +149,14 @@ def _upload(http: Http, file: JobFile, offset: int, moved: Callable[[int], None]
                 offset = left[0][1]
                 continue
             moved(len(piece))
-            offset = int(answer["offset"])
-            if answer["complete"]:
+            if part(answer, "complete", bool):
                 return
+            stands = _offset(answer, file)
+            if stands <= offset:
+                if restarts == 0:
+                    raise FarmError("unknown", f"the coordinator takes {file.path} and does not get on with it")
+                restarts -= 1
+            offset = stands
 
 
 def _send(http: Http, file: JobFile, offset: int, piece: bytes) -> dict[str, Any]:
