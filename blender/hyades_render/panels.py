@@ -109,6 +109,18 @@ class HYADES_PT_performance(_Panel, bpy.types.Panel):
         layout.prop(render, "preview_pixel_size", text="Viewport Pixel Size")
 
 
+class HYADES_PT_textures(_Panel, bpy.types.Panel):
+    bl_label = "Textures"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    def draw(self, context: bpy.types.Context) -> None:
+        settings, layout = context.scene.hyades, self.begin()
+        layout.prop(settings, "bake", text="Bake Other Nodes")
+        row = layout.row()
+        row.active = settings.bake
+        row.prop(settings, "bake_size")
+
+
 class HYADES_PT_complaints(_Panel, bpy.types.Panel):
     """What the last export could not say."""
 
@@ -187,6 +199,7 @@ _CLASSES = (
     HYADES_PT_integrator,
     HYADES_PT_motion_blur,
     HYADES_PT_film,
+    HYADES_PT_textures,
     HYADES_PT_performance,
     HYADES_PT_complaints,
     HYADES_PT_passes,

@@ -73,6 +73,16 @@ class HyadesSceneSettings(bpy.types.PropertyGroup):
         default=0.3, min=0.01, max=1.0,
     )
     denoise: EnumProperty(name="Denoise", description="What takes noise out", items=DENOISERS, default="none")
+    bake: BoolProperty(
+        name="Bake",
+        description="Graphs of nodes that no texture of Hyades means become pictures; off: their mean is used",
+        default=True,
+    )
+    bake_size: IntProperty(
+        name="Bake Size",
+        description="Side of such a picture in pixels, one for each material of an object",
+        default=1024, min=64, max=4096,
+    )
     preview_samples: IntProperty(
         name="Viewport Samples",
         description="Samples per pixel in the viewport, which refines step by step",

@@ -196,6 +196,22 @@ class Scenes(AddOnTest):
         scene_job.apply_settings(job, settings)
         self.assertEqual((job.integrator.TYPE, job.denoise, job.sampling.min_samples), ("mlt", "oidn", 16))
 
+    def test_what_is_baked_is_for_the_user_to_say(self) -> None:
+        """A texture that the job does not have: a picture of the size that is asked for, or its mean."""
+        made = bpy.data.materials["Material"]
+        made.use_nodes = True
+        nodes = made.node_tree.nodes
+        magic = nodes.new("ShaderNodeTexMagic")
+        made.node_tree.links.new(magic.outputs["Color"], nodes["Principled BSDF"].inputs["Base Color"])
+        self.scene.hyades.bake_size = 128
+        exported = animation.job_of(self.scene, frames=None, name="baked")
+        self.assertEqual(exported.job.objects["Cube"].material.base_color.file.shape, (128, 128, 3))
+        self.assertEqual(exported.complaints, [])
+        self.scene.hyades.bake = False
+        exported = animation.job_of(self.scene, frames=None, name="mean")
+        self.assertEqual(len(exported.job.objects["Cube"].material.base_color), 3)
+        self.assertIn("node 'Magic Texture'", str(exported.complaints[0]))
+
     def test_files_are_called_as_the_output_says(self) -> None:
         render = self.scene.render
         for path, kind, numbered, expected in (
