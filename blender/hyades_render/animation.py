@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import re
 from collections.abc import Generator
 from pathlib import Path
@@ -15,8 +16,7 @@ from . import capture, joined_frames, passes, scene_job
 from .export import Complaint, Exported, export_job
 from .moving import Moments
 
-# Without a configuration of OpenColorIO: curves of Hyades by the names of Blender's views.
-_TONE_MAPS = {"Standard": "srgb", "Filmic": "filmic", "AgX": "agx", "Raw": "linear"}
+_TONE_MAPS = {"Standard": "srgb", "Raw": "linear"}  # views that need no configuration of OpenColorIO
 _LOOKS = 5  # frames that tell whether anything moves
 _EXR = ("OPEN_EXR", "OPEN_EXR_MULTILAYER")
 
@@ -101,8 +101,10 @@ def _outputs(scene: Any, job: hyades.Job, numbered: bool) -> tuple[list[outputs.
     kind = image.file_format
     stem = _stem(scene, job.name, numbered and kind != "FFMPEG")
     shown: dict[str, Any] = {"exposure": scene.view_settings.exposure}
+    job.color = view_of(scene) if kind not in _EXR else None
     if job.color is None:
         shown["tone_map"] = _TONE_MAPS.get(scene.view_settings.view_transform, "srgb")
+    found += _of_view(scene.view_settings) if kind not in _EXR else []
     see_through = scene.render.film_transparent and image.color_mode == "RGBA"
     if kind in _EXR:
         layer = next(layer for layer in scene.view_layers if layer.use)
@@ -121,6 +123,30 @@ def _outputs(scene: Any, job: hyades.Job, numbered: bool) -> tuple[list[outputs.
             found.append(Complaint("output", f"files of type {kind} are not written; PNG is"))
         made = outputs.Png(file=stem + ".png", transparent=see_through, bits=_bits(image), **shown)
     return [made], found
+
+
+def view_of(scene: Any) -> hyades.ColorManagement | None:
+    """How the scene's view shows light, by Blender's own configuration of OpenColorIO (or what OCIO names); None where
+    that is plain sRGB, or light as it is."""
+    view = scene.view_settings
+    if view.look == "None" and view.view_transform in _TONE_MAPS and scene.display_settings.display_device == "sRGB":
+        return None
+    folder = bpy.utils.system_resource("DATAFILES", path="colormanagement")
+    config = Path(os.environ.get("OCIO") or Path(folder) / "config.ocio")
+    made = hyades.ColorManagement(config=config, display=scene.display_settings.display_device, view=view.view_transform)
+    if view.look != "None":
+        made.look = view.look
+    return made
+
+
+def _of_view(view: Any) -> list[Complaint]:
+    """What of a view the job has not."""
+    found = []
+    if view.gamma != 1:
+        found.append(Complaint("color management", "the gamma of the view is left out"))
+    if view.use_curve_mapping:
+        found.append(Complaint("color management", "the curves of the view are left out"))
+    return found
 
 
 def _bits(image: Any) -> int:

@@ -6,6 +6,7 @@ import unittest
 from unittest import mock
 
 import bpy
+import hyades
 import numpy
 from addon import AddOnTest
 
@@ -72,6 +73,22 @@ class Pictures(AddOnTest):
         picture = self.render()["ViewLayer.Combined"]
         self.assertFalse(picture[0].any())
         self.assertTrue((picture[:, :, 3] == 1).any())
+
+    def test_views_look_as_in_blender(self) -> None:
+        """Files that the program makes of a job are those that Blender saves after F12."""
+        self.scene.render.dither_intensity = 0
+        image = self.scene.render.image_settings
+        for view, look in (("Standard", "None"), ("Filmic", "None"), ("Filmic", "High Contrast")):
+            settings = self.scene.view_settings
+            settings.view_transform, settings.look, settings.exposure = view, look, 0.5
+            image.file_format, image.color_mode = "PNG", "RGB"
+            self.scene.render.filepath = str(self.folder / "blender.png")
+            bpy.ops.render.render(write_still=True)
+            job = self.folder / "job.yaml"
+            bpy.ops.hyades.export_job(filepath=str(job))
+            ours = hyades.render(job, self.folder / "ours").picture().array[:, :, :3].astype(int)
+            theirs = hyades.Picture.read(self.folder / "blender.png").array[:, :, :3].astype(int)
+            self.assertLessEqual(int(abs(ours - theirs).max()), 1, (view, look))
 
     def test_denoised_pictures_keep_the_noisy_one(self) -> None:
         self.scene.hyades.denoise = "features"
