@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "core/base/machine.h"
 #include "core/film/film_part.h"
 
 namespace hyades::cli {
@@ -12,7 +13,7 @@ namespace {
 
 constexpr double kShare = 0.02;
 /// What the first parts may take, so that something is seen at once.
-constexpr auto kAdvance = std::chrono::milliseconds(20);
+constexpr double kAdvance = 0.02;  // seconds
 constexpr int kPart = Viewer::kPart;
 
 int columns_of(const core::PixelRect& window) { return (window.width() + kPart - 1) / kPart; }
@@ -59,8 +60,8 @@ void ShownFilms::complete(int32_t frame, const core::Film& film) {
 }
 
 bool ShownFilms::may_spend() const {
-  return spent_ <=
-         kAdvance + std::chrono::duration_cast<Clock::duration>(kShare * (Clock::now() - begin_));
+  const std::chrono::duration<double> run = Clock::now() - begin_;
+  return spent_ <= kAdvance + kShare * run.count();
 }
 
 void ShownFilms::show(int32_t frame, const core::Film& film, bool all) {
@@ -71,7 +72,8 @@ void ShownFilms::show(int32_t frame, const core::Film& film, bool all) {
   for (size_t looked = 0; looked < count && (all || may_spend()); ++looked) {
     const size_t part = pending.next++ % count;
     if (!pending.parts[part]) continue;
-    const Clock::time_point begin = Clock::now();
+    // Of the processor: where others want it too, waiting for it is no work.
+    const double begin = core::thread_seconds();
     if (film.layout().layers.splats) {
       pending.parts.assign(count, false);
       show_part(frame, film, window);
@@ -81,7 +83,7 @@ void ShownFilms::show(int32_t frame, const core::Film& film, bool all) {
       const int y = window.y0 + static_cast<int>(part) / columns * kPart;
       show_part(frame, film, core::intersection(window, {x, y, x + kPart, y + kPart}));
     }
-    spent_ += Clock::now() - begin;
+    spent_ += core::thread_seconds() - begin;
   }
 }
 

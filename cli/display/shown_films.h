@@ -51,7 +51,7 @@ class ShownFilms : public coordinator::FilmAudience {
   core::Mutex mutex_;
   /// Of frames that are not complete.
   std::map<int32_t, Pending> pending_ HYADES_GUARDED_BY(mutex_);
-  Clock::duration spent_ HYADES_GUARDED_BY(mutex_){0};
+  double spent_ HYADES_GUARDED_BY(mutex_) = 0;  ///< [s] of the processor
 };
 
 }  // namespace hyades::cli
