@@ -46,7 +46,7 @@ def monkeys() -> None:
     camera((0, -8, 3.2), (0, 0, 0.7))
 
 
-@scene(samples=384, block=0.1)
+@scene(samples=256, block=0.1)
 def room() -> None:
     # A room lit through its window and by a lamp, with wood, bricks and a mirror.
     sized()
