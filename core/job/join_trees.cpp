@@ -3,9 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
-#include <map>
 #include <memory>
 #include <string>
+
+#include "core/job/key_index.h"
 
 namespace hyades::core {
 
@@ -39,14 +40,13 @@ bool is_named_section(std::string_view key) { return contains(kNamed, key); }
 YamlPtr join_section(const YamlNode& upper, const YamlNode& lower, bool overrides,
                      Diagnostics& diagnostics) {
   auto result = std::make_shared<YamlNode>(upper);
-  std::map<std::string_view, size_t> index;
-  for (size_t i = 0; i < upper.map.size(); ++i) index[upper.map[i].key] = i;
+  const KeyIndex index(upper);
   for (const YamlEntry& entry : lower.map) {
-    const auto own = index.find(entry.key);
-    if (own == index.end()) {
+    const size_t own = index.find(entry.key);
+    if (own == KeyIndex::kNone) {
       result->map.push_back(entry);
     } else if (!overrides) {
-      complain_twice(upper.map[own->second], entry, diagnostics);
+      complain_twice(upper.map[own], entry, diagnostics);
     }
   }
   return result;
@@ -55,14 +55,15 @@ YamlPtr join_section(const YamlNode& upper, const YamlNode& lower, bool override
 YamlPtr join_files(const YamlNode& upper, const YamlNode& lower, bool overrides,
                    Diagnostics& diagnostics) {
   auto result = std::make_shared<YamlNode>(upper);
+  const KeyIndex index(upper);
   for (const YamlEntry& entry : lower.map) {
     if (entry.key == "include") continue;
-    const auto own = std::find_if(result->map.begin(), result->map.end(),
-                                  [&](const YamlEntry& e) { return e.key == entry.key; });
-    if (own == result->map.end()) {
+    const size_t place = index.find(entry.key);
+    if (place == KeyIndex::kNone) {
       result->map.push_back(entry);
       continue;
     }
+    YamlEntry* const own = &result->map[place];
     const bool maps =
         own->value->kind == YamlNode::Kind::map && entry.value->kind == YamlNode::Kind::map;
     if (maps && is_named_section(entry.key)) {

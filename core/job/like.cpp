@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "core/base/text.h"
+#include "core/job/key_index.h"
 
 namespace hyades::core {
 
@@ -22,14 +23,14 @@ const std::array<std::vector<std::string>, 3> kEither = {{
     {"anisotropic", "roughness_along"},
 }};
 
-bool replaced_by_own(const YamlNode& own, const std::string& key) {
-  if (own.find(key) != nullptr) return true;
+bool replaced_by_own(const KeyIndex& own, const std::string& key) {
+  if (own.contains(key)) return true;
   for (const auto& row : kEither) {
     bool in_row = false;
     bool own_has_one = false;
     for (const std::string& k : row) {
       in_row |= k == key;
-      own_has_one |= own.find(k) != nullptr;
+      own_has_one |= own.contains(k);
     }
     if (in_row && own_has_one) return true;
   }
@@ -46,8 +47,9 @@ YamlPtr merged(const YamlNode& own, const YamlNode& other) {
   for (const YamlEntry& entry : own.map) {
     if (entry.key != "like") result->map.push_back(entry);
   }
+  const KeyIndex keys(own);
   for (const YamlEntry& entry : other.map) {
-    if (!replaced_by_own(own, entry.key)) result->map.push_back(entry);
+    if (!replaced_by_own(keys, entry.key)) result->map.push_back(entry);
   }
   return result;
 }

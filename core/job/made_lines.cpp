@@ -4,11 +4,18 @@
 #include <charconv>
 #include <cstddef>
 #include <iterator>
+#include <utility>
 
 #include "core/base/assets.h"
 #include "core/job/scene_document.h"
 
 namespace hyades::core {
+
+namespace {
+
+constexpr size_t kMostOthers = 256;
+
+}  // namespace
 
 MadeLines::MadeLines(std::string_view text, const std::string& file)
     : file_(std::make_shared<const std::string>(file)), made_(is_script_file(file)) {
@@ -30,16 +37,20 @@ YamlPlace MadeLines::place_of(std::string_view mark) {
   const auto read = std::from_chars(mark.data(), mark.data() + mark.size(), line);
   mark.remove_prefix(static_cast<size_t>(read.ptr - mark.data()));
   if (mark.size() < 2) return {file_, line, 0};
-  const std::string other = resolve_reference(std::string(mark.substr(1)), *file_);
-  const bool same = !marks_.empty() && *marks_.back().where.file == other;
-  return {same ? marks_.back().where.file : std::make_shared<const std::string>(other), line, 0};
+  mark.remove_prefix(1);
+  auto other = others_.find(mark);
+  if (other == others_.end()) {
+    if (others_.size() >= kMostOthers) return {file_, line, 0};
+    const std::string name(mark);
+    auto path = std::make_shared<const std::string>(resolve_reference(name, *file_));
+    other = others_.emplace(name, std::move(path)).first;
+  }
+  return {other->second, line, 0};
 }
 
 std::set<std::string> MadeLines::other_files() const {
   std::set<std::string> files;
-  for (const Mark& mark : marks_) {
-    if (mark.where.file != file_) files.insert(*mark.where.file);
-  }
+  for (const auto& [mark, path] : others_) files.insert(*path);
   return files;
 }
 

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <functional>
+#include <map>
 #include <memory>
 #include <set>
 #include <string>
@@ -16,7 +18,8 @@ inline constexpr std::string_view kLineMark = "#line ";
 
 /// Where the lines of a document that a script made come from: its marks (kLineMark) each tell for
 /// the lines below them, up to the next. Documents of anything else have no marks: every line is
-/// its own.
+/// its own. Of other files the first 256 are told apart; what comes from more counts as the
+/// script's own.
 class MadeLines {
  public:
   /// `text`: the document. `file`: what complaints call it; marks count where that is a script.
@@ -38,6 +41,7 @@ class MadeLines {
 
   std::shared_ptr<const std::string> file_;
   bool made_;
+  std::map<std::string, std::shared_ptr<const std::string>, std::less<>> others_;  ///< by mark
   std::vector<Mark> marks_;  ///< by rising `from`
 };
 

@@ -30,6 +30,18 @@ TEST(MadeLines, MarksTellTheLinesBelowThem) {
   EXPECT_EQ(plain.column, 4);
 }
 
+TEST(MadeLines, OfManyFilesTheFirstAreToldApart) {
+  std::string text;
+  for (int i = 0; i < 300; ++i) text += "#line 1 f" + std::to_string(i) + ".lua\na: 1\n";
+  text += "#line 5 f0.lua\na: 1\n";
+  const MadeLines lines(text, "in/s.lua");
+  EXPECT_EQ(lines.other_files().size(), 256U);
+  EXPECT_EQ(*lines.at(2, 1).file, "in/f0.lua");
+  EXPECT_EQ(*lines.at(512, 1).file, "in/f255.lua");
+  EXPECT_EQ(*lines.at(514, 1).file, "in/s.lua");
+  EXPECT_EQ(lines.at(2, 1).file, lines.at(602, 1).file) << "one name in memory, however many marks";
+}
+
 TEST(MadeLines, AreWrittenWhereTheyChange) {
   const auto at = [](const YamlPtr& node, const char* file, int line) {
     auto placed = std::make_shared<YamlNode>(*node);
