@@ -13,6 +13,7 @@
 #include "core/job/yaml_writer.h"
 #include "import/scene_source.h"
 #include "import/stand_in.h"
+#include "import/within_folder.h"
 
 namespace hyades::core {
 
@@ -79,9 +80,14 @@ class ImportingResolver::Sources : public AssetResolver {
 
   bool exists(const std::string& reference) override { return files_.exists(reference); }
 
+  /// `file`: as resolve_reference() gives it.
+  Status check(const std::string& scene, const std::string& file) const {
+    return links_.check(scene, file);
+  }
+
   Status check(const std::string& scene, const std::vector<std::string>& files) const {
     for (const std::string& file : files) {
-      const auto inside = links_.check(scene, resolve_reference(file, scene));
+      const auto inside = check(scene, resolve_reference(file, scene));
       if (!inside) return inside.error().in(scene);
     }
     return {};
@@ -198,6 +204,15 @@ bool ImportingResolver::exists(const std::string& reference) {
   const auto inside = inside_of(resolved);
   if (inside && state_->makes(*inside)) return state_->made(*inside, resolved).ok();
   return state_->files.exists(reference);
+}
+
+Status ImportingResolver::may_name(const std::string& scene, const std::string& file) {
+  const std::filesystem::path whole(file);
+  const std::string folder = std::filesystem::path(scene).parent_path().string();
+  const bool beside = whole.is_absolute() == std::filesystem::path(scene).is_absolute();
+  const auto inside =
+      within_folder(beside && !folder.empty() ? whole.lexically_relative(folder).string() : file);
+  return inside ? state_->lenient.check(scene, file) : inside.error();
 }
 
 bool ImportingResolver::is_on_disk(const std::string& reference) const {

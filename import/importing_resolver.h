@@ -31,6 +31,9 @@ class ImportingResolver : public AssetResolver {
   Result<Bytes> open(const std::string& reference, const std::string& from = {}) override;
   bool exists(const std::string& reference) override;
 
+  /// Files of the scene's folder and below, by links too.
+  Status may_name(const std::string& scene, const std::string& file) override;
+
   /// Whether open() reads a file of the resolver below, and makes nothing.
   bool is_on_disk(const std::string& reference) const;
 

@@ -1,9 +1,9 @@
 #include "import/within_folder.h"
 
-#include <algorithm>
 #include <cstddef>
 
 #include "core/base/assets.h"
+#include "core/base/printable.h"
 
 namespace hyades::core {
 
@@ -15,9 +15,8 @@ Result<std::string> within_folder(const std::string& reference) {
                  "; expected a file in the scene's folder or below it"};
   };
   if (reference.empty()) return Error{"the name of the file is empty"};
-  if (std::any_of(reference.begin(), reference.end(),
-                  [](unsigned char c) { return c < 32 || c == 127; })) {
-    return Error{"the name of the file has control characters"};
+  if (!is_printable(reference)) {
+    return Error{"the name of the file has characters that cannot be seen"};
   }
   const std::string folded = resolve_reference(reference);
   const size_t colon = folded.find(':');

@@ -99,6 +99,10 @@ std::unique_ptr<AssetResolver> make_file_resolver(const std::string& folder) {
   return std::make_unique<FileResolver>(folder);
 }
 
+Status AssetResolver::may_name(const std::string& /*scene*/, const std::string& /*file*/) {
+  return {};
+}
+
 struct RecordingResolver::State {
   AssetResolver& inner;
   mutable std::mutex mutex;
@@ -132,6 +136,10 @@ Result<Bytes> RecordingResolver::open(const std::string& reference, const std::s
 
 bool RecordingResolver::exists(const std::string& reference) {
   return state_->inner.exists(reference);
+}
+
+Status RecordingResolver::may_name(const std::string& scene, const std::string& file) {
+  return state_->inner.may_name(scene, file);
 }
 
 std::vector<AssetRecord> RecordingResolver::records() const {

@@ -24,6 +24,11 @@ class AssetResolver {
   /// Whether there is such an asset (which may fail to open all the same). Nobody counts that as
   /// opening it.
   virtual bool exists(const std::string& reference) { return open(reference).ok(); }
+
+  /// Whether `scene`, which somebody else may have written, may name `file`; both as
+  /// resolve_reference() gives them. The error says where it leads. Who opens files that others
+  /// have sent has none to guard.
+  virtual Status may_name(const std::string& scene, const std::string& file);
 };
 
 /// What `reference` means when asset `from` names it: a path relative to the job's folder (or an
@@ -54,6 +59,7 @@ class RecordingResolver : public AssetResolver {
   ~RecordingResolver() override;
   Result<Bytes> open(const std::string& reference, const std::string& from = {}) override;
   bool exists(const std::string& reference) override;
+  Status may_name(const std::string& scene, const std::string& file) override;
   std::vector<AssetRecord> records() const;
 
  private:

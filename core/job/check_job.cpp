@@ -9,6 +9,7 @@
 #include <set>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "core/base/text.h"
@@ -168,6 +169,11 @@ void check_groups(ReadContext& context) {
   }
 }
 
+/// Whether whoever names a file may.
+Status may_be_named(const FileUse& use, AssetResolver& assets) {
+  return use.script.empty() ? Status() : assets.may_name(use.script, use.reference);
+}
+
 /// Opens a file, or all files of a UDIM pattern or a sequence of meshes, so that whoever records
 /// what a job opens knows them.
 Status open_all(const Job& job, const FileUse& use, AssetResolver& assets) {
@@ -189,12 +195,13 @@ Status open_all(const Job& job, const FileUse& use, AssetResolver& assets) {
 }
 
 void check_files(ReadContext& context, AssetResolver& assets) {
-  std::set<std::string> good;
+  std::set<std::pair<std::string, std::string>> good;  // of scripts and files
   for (const FileUse& use : context.files) {
-    if (good.contains(use.reference)) continue;
-    const Status opened = open_all(context.job, use, assets);
+    if (good.contains({use.script, use.reference})) continue;
+    const Status named = may_be_named(use, assets);
+    const Status opened = named ? open_all(context.job, use, assets) : named;
     if (opened) {
-      good.insert(use.reference);
+      good.insert({use.script, use.reference});
     } else {
       context.complain(use.where, fmt::format("{}: {}", use.label, opened.error().message));
     }
@@ -206,12 +213,16 @@ void check_files(ReadContext& context, AssetResolver& assets) {
 void find_color_files(ReadContext& context, AssetResolver& assets) {
   if (!context.job.color) return;
   ColorDesc& color = *context.job.color;
+  const auto use =
+      std::find_if(context.files.begin(), context.files.end(),
+                   [&](const FileUse& file) { return file.reference == color.config; });
+  if (use == context.files.end() || !may_be_named(*use, assets)) return;
   const auto config = assets.open(color.config);
   if (!config) return;  // complained about already
   for (const std::string& file : ocio_file_candidates({config->chars(), config->size()})) {
-    if (assets.open(file, color.config)) {
-      color.files.push_back(resolve_reference(file, color.config));
-    }
+    const std::string reference = resolve_reference(file, color.config);
+    if (!may_be_named({reference, {}, {}, false, use->script}, assets)) continue;
+    if (assets.open(file, color.config)) color.files.push_back(reference);
   }
 }
 

@@ -28,16 +28,21 @@ class Loader {
   Loader(const std::string& file_name, AssetResolver& assets, Diagnostics& diagnostics)
       : main_(std::filesystem::path(file_name)), assets_(assets), diagnostics_(diagnostics) {}
 
-  /// The map of `text`, which is file `reference`, with its includes merged below it.
-  YamlPtr load(std::string_view text, const std::string& reference, const std::string& shown) {
+  /// The map of `text`, which is file `reference`, with its includes merged below it. `script`: by
+  /// whose word it is read; empty: by the job's.
+  YamlPtr load(std::string_view text, const std::string& reference, const std::string& shown,
+               const std::string& script) {
     bytes_ += text.size();
     YamlPtr own = parse_yaml(text, shown, diagnostics_);
     if (own == nullptr || own->kind != YamlNode::Kind::map) return own;
     // What parts of a script say is said by the script, whose folder its files are named from.
+    std::set<std::string> places = MadeLines(text, shown).other_files();
     if (!open_.empty()) {
-      for (const std::string& part : MadeLines(text, shown).other_files()) {
-        tree.shown[part] = reference;
-      }
+      for (const std::string& part : places) tree.shown[part] = reference;
+    }
+    places.insert(shown);
+    if (!script.empty()) {
+      for (const std::string& place : places) tree.scripts[place] = script;
     }
     if (open_.empty()) {
       fps_ = fps_of(*own);
@@ -98,9 +103,16 @@ class Loader {
     return merged;
   }
 
+  /// The script that says what stands at `where`; empty: the job does.
+  std::string script_at(const SourceLocation& where) const {
+    const auto found = tree.scripts.find(where.file);
+    return found == tree.scripts.end() ? std::string() : found->second;
+  }
+
   struct Opened {
     std::string reference;
     std::string shown;
+    std::string script;  ///< by whose word it is read; empty: by the job's
     Bytes bytes;
   };
 
@@ -131,6 +143,17 @@ class Loader {
                                        " deep and " + std::to_string(kMaxFiles) + " in all");
       return std::nullopt;
     }
+    const auto scene = document_of(reference);
+    const std::string named = scene ? scene->scene : reference;
+    std::string script = script_at(name.where);
+    if (!script.empty()) {
+      if (const auto may = assets_.may_name(script, named); !may) {
+        diagnostics_.add(name.where, what + ": " + may.error().message);
+        return std::nullopt;
+      }
+    } else if (is_script_file(named)) {
+      script = named;
+    }
     auto bytes = assets_.open(wanted, from);
     if (!bytes) {
       diagnostics_.add(name.where, what + ": " + bytes.error().message);
@@ -142,12 +165,10 @@ class Loader {
       return std::nullopt;
     }
     // Complaints about what importers make are complaints about the scene.
-    const auto scene = document_of(reference);
-    const std::string named = scene ? scene->scene : reference;
     const std::string shown = (main_.parent_path() / named).lexically_normal().string();
     tree.includes.push_back(reference);
     tree.shown[shown] = reference;
-    return Opened{reference, shown, std::move(*bytes)};
+    return Opened{reference, shown, std::move(script), std::move(*bytes)};
   }
 
   static const YamlNode* frames_key(const YamlNode& root, const char* key) {
@@ -202,7 +223,8 @@ class Loader {
 
   YamlPtr load_opened(const Opened& opened) {
     const Opened* file = &opened;
-    YamlPtr root = load({file->bytes.chars(), file->bytes.size()}, file->reference, file->shown);
+    YamlPtr root =
+        load({file->bytes.chars(), file->bytes.size()}, file->reference, file->shown, file->script);
     if (root == nullptr) return nullptr;
     if (root->kind != YamlNode::Kind::map) {
       diagnostics_.add(root->where, "the included file holds " + describe(*root) +
@@ -260,7 +282,9 @@ class Loader {
 JobTree load_job_tree(const std::string& text, const std::string& file_name, AssetResolver& assets,
                       Diagnostics& diagnostics) {
   Loader loader(file_name, assets, diagnostics);
-  loader.tree.root = loader.with_scenes(loader.load(text, loader.main_reference(), file_name));
+  const std::string name = loader.main_reference();
+  const std::string script = is_script_file(name) ? name : std::string();
+  loader.tree.root = loader.with_scenes(loader.load(text, name, file_name, script));
   return std::move(loader.tree);
 }
 

@@ -15,6 +15,9 @@ struct JobTree {
   YamlPtr root;                              ///< null where a file could not be read at all
   std::vector<std::string> includes;         ///< relative to the job's folder, in order of reading
   std::map<std::string, std::string> shown;  ///< name in complaints -> name in `includes`
+  /// Name in complaints of what a script says or includes -> the script, which may name files of
+  /// its own folder only.
+  std::map<std::string, std::string> scripts;
 };
 
 /// Reads `text` and the files that its `include:` names (a name or a list of names, relative to the

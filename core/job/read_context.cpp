@@ -34,4 +34,9 @@ std::string ReadContext::job_relative(const std::string& reference,
   return resolve_reference(reference, found == included.end() ? std::string() : found->second);
 }
 
+std::string ReadContext::script_at(const SourceLocation& where) const {
+  const auto found = scripts.find(where.file);
+  return found == scripts.end() ? std::string() : found->second;
+}
+
 }  // namespace hyades::core

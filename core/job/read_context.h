@@ -30,6 +30,7 @@ struct FileUse {
   SourceLocation where;
   std::string label;
   bool per_frame = false;  ///< a mesh, which may have a file for each frame (is_mesh_sequence)
+  std::string script{};    ///< that names it, and may not name every file; empty: the job does
 };
 
 /// What all readers of one job share.
@@ -47,9 +48,10 @@ struct ReadContext {
   bool in_shutter = false;  ///< what is read now counts all the while the shutter is open
   /// Display name of an included file -> its path relative to the job's folder.
   std::map<std::string, std::string> included;
-  std::map<std::string, YamlPtr> materials;  ///< as written, `like` followed; for overrides
-  bool files_missing = false;                ///< files that names may stand in could not be read
-  KeyListing* listing = nullptr;             ///< set: only collect which keys the readers know
+  std::map<std::string, std::string> scripts;  ///< JobTree::scripts
+  std::map<std::string, YamlPtr> materials;    ///< as written, `like` followed; for overrides
+  bool files_missing = false;                  ///< files that names may stand in could not be read
+  KeyListing* listing = nullptr;               ///< set: only collect which keys the readers know
 
   /// Adds a complaint, once (a node that `like:` or an alias shares is read several times).
   void complain(const SourceLocation& where, const std::string& message);
@@ -60,6 +62,9 @@ struct ReadContext {
 
   /// `reference` as written at `where`, made relative to the job's folder.
   std::string job_relative(const std::string& reference, const SourceLocation& where) const;
+
+  /// The script that says what stands at `where`; empty: the job does.
+  std::string script_at(const SourceLocation& where) const;
 
  private:
   std::set<std::string> complaints_;

@@ -4,7 +4,9 @@
 
 #include <cstdint>
 #include <cstring>
+#include <map>
 #include <nlohmann/json.hpp>
+#include <string>
 #include <string_view>
 
 #include "import/gltf/uri.h"
@@ -116,6 +118,7 @@ Result<GltfContainer> open_container(const Bytes& file) {
 Result<std::vector<Bytes>> read_buffers(const GltfContainer& container, const JsonValue& root,
                                         AssetResolver& files, const std::string& reference) {
   std::vector<Bytes> buffers;
+  std::map<std::string, Bytes> known;  // of several that name one file
   for (const JsonValue& buffer : root.list("buffers")) {
     const auto length =
         static_cast<size_t>(buffer.required_integer("byteLength", 0, int64_t{1} << 46));
@@ -131,9 +134,14 @@ Result<std::vector<Bytes>> read_buffers(const GltfContainer& container, const Js
     } else if (!uri.empty() && !stand_in) {
       const auto path = decode_file_uri(uri);
       if (!path) return path.error().in(buffer.place());
-      auto opened = files.open(*path, reference);
-      if (!opened) return opened.error().in(buffer.place());
-      bytes = *opened;
+      const auto found = known.find(*path);
+      if (found != known.end()) {
+        bytes = found->second;
+      } else {
+        auto opened = files.open(*path, reference);
+        if (!opened) return opened.error().in(buffer.place());
+        bytes = known.emplace(*path, *opened).first->second;
+      }
     } else if (!stand_in) {
       if (!buffers.empty() || !container.has_binary) {
         return Error{buffer.place() + " has no uri, and the file no binary part for it"};

@@ -1,6 +1,7 @@
 #include "import/gltf/read_model.h"
 
 #include <cstddef>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -159,7 +160,10 @@ Status read_all(GltfModel& model, const GltfContainer& container, AssetResolver&
   if (Status s = check_extensions(root, model.notes); !s) return s;
   const auto buffers = read_buffers(container, root, files, reference);
   if (!buffers) return buffers.error();
-  for (const Bytes& buffer : *buffers) model.buffer_bytes += buffer.size();
+  std::set<const char*> counted;
+  for (const Bytes& buffer : *buffers) {
+    if (counted.insert(buffer.chars()).second) model.buffer_bytes += buffer.size();
+  }
   auto views = read_views(root, *buffers);
   if (!views) return views.error();
   model.views = std::move(*views);

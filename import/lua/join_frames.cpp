@@ -16,6 +16,10 @@ namespace hyades::core::lua {
 namespace {
 
 using Kind = YamlNode::Kind;
+
+/// What takes about as much memory as one value: bytes of a text, items that are pointed to.
+constexpr uint64_t kBytesPerValue = 128;
+constexpr uint64_t kItemsPerValue = 4;
 using Nodes = std::vector<const YamlPtr*>;  ///< of one path, by frame
 
 bool is_number(const YamlNode& node) {
@@ -165,11 +169,22 @@ class Joiner {
 
 }  // namespace
 
+/// Values of the memory that a text takes.
+uint64_t values_of(const std::string& text) { return text.size() / kBytesPerValue; }
+
+/// Those below and including a node.
+uint64_t values_of(const YamlNode& node) {
+  uint64_t values = 1 + values_of(node.scalar);
+  for (const YamlPtr& item : node.list) values += values_of(*item);
+  for (const YamlEntry& entry : node.map) values += values_of(entry.key) + values_of(*entry.value);
+  return values;
+}
+
 YamlPtr share_equal(const YamlPtr& first, const YamlPtr& tree, uint64_t& different) {
   const bool alike = first->kind == tree->kind && first->list.size() == tree->list.size() &&
                      first->map.size() == tree->map.size();
   if (!alike || first->scalar != tree->scalar || first->quoted != tree->quoted) {
-    different += tree->weight;
+    different += values_of(*tree);
     return tree;
   }
   auto copy = std::make_shared<YamlNode>(*tree);
@@ -179,11 +194,16 @@ YamlPtr share_equal(const YamlPtr& first, const YamlPtr& tree, uint64_t& differe
     same = same && copy->list[i] == first->list[i];
   }
   for (size_t i = 0; i < copy->map.size(); ++i) {
-    same = same && first->map[i].key == tree->map[i].key;
+    if (first->map[i].key != tree->map[i].key) {
+      same = false;
+      different += 1 + values_of(tree->map[i].key);
+    }
     copy->map[i].value = share_equal(first->map[i].value, tree->map[i].value, different);
     same = same && copy->map[i].value == first->map[i].value;
   }
-  return same ? first : YamlPtr(copy);
+  if (same) return first;
+  different += (copy->list.size() + copy->map.size()) / kItemsPerValue;
+  return copy;
 }
 
 Result<YamlPtr> join_frames(const std::vector<FrameTree>& trees) {

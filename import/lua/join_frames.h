@@ -15,7 +15,7 @@ struct FrameTree {
 };
 
 /// `tree` with what is equal in `first`, which is kept once then; `different` grows by the values
-/// that are not.
+/// that are not, and by those for whose memory their texts and the lists around them would stand.
 YamlPtr share_equal(const YamlPtr& first, const YamlPtr& tree, uint64_t& different);
 
 /// One tree that is each of `trees` (at least one, by rising frame) at its frame: what differs

@@ -84,6 +84,9 @@ std::vector<Rank> collect_keys(lua_State* state) {
     lua_pop(state, 1);
     Rank rank = rank_of(state, -1);
     rank.index = static_cast<lua_Integer>(ranks.size()) + 1;
+    if (ranks.size() == ranks.capacity()) {
+      Machine::of(state).need(3 * sizeof(Rank) * ranks.size());
+    }
     ranks.push_back(rank);
     lua_pushvalue(state, -1);
     lua_rawseti(state, -3, rank.index);

@@ -1,6 +1,7 @@
 #include "import/lua/libraries.h"
 
 #include <array>
+#include <cstddef>
 #include <cstdio>
 #include <string>
 
@@ -12,6 +13,9 @@ namespace hyades::core::lua {
 
 namespace {
 
+/// Bytes of one text that is printed, and of a line before its last.
+constexpr size_t kMostPrinted = size_t{1} << 20;
+
 int print(lua_State* state) {
   std::string line;
   const int count = lua_gettop(state);
@@ -19,6 +23,9 @@ int print(lua_State* state) {
     push_text(state, i);
     size_t size = 0;
     const char* const text = lua_tolstring(state, -1, &size);
+    if (size > kMostPrinted || line.size() > kMostPrinted) {
+      return luaL_error(state, "a line of more than %d bytes", static_cast<int>(kMostPrinted));
+    }
     line.append(i > 1 ? " " : "").append(text, size);
     lua_pop(state, 1);
   }

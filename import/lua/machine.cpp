@@ -21,21 +21,15 @@ namespace {
 /// Instructions between two looks at the limits.
 constexpr int kStepsPerLook = 1000;
 constexpr uint64_t kBytesPerStep = 16;
+/// Steps of functions between two looks at the clock: some milliseconds.
+constexpr uint64_t kStepsPerFunctionLook = 1'000'000;
 /// Functions up the stack that are looked at for a line.
 constexpr int kMostLevels = 8;
 
 /// What a script says of itself, as a terminal may show it: lines stay.
-std::string shown_lines(std::string_view text) {
-  std::string out;
-  while (true) {
-    const size_t end = std::min(text.find('\n'), text.size());
-    std::string line(text.substr(0, end));
-    for (size_t at = 0; (at = line.find('\t', at)) != std::string::npos;) line.replace(at, 1, "  ");
-    out += printable(line);
-    if (end == text.size()) return out;
-    out += '\n';
-    text.remove_prefix(end + 1);
-  }
+std::string shown_lines(std::string text) {
+  for (size_t at = 0; (at = text.find('\t', at)) != std::string::npos;) text.replace(at, 1, "  ");
+  return printable_lines(text);
 }
 
 }  // namespace
@@ -72,8 +66,10 @@ Machine& Machine::of(lua_State* state) {
 
 bool Machine::load(std::string_view text, const std::string& shown, const std::string& name) {
   files_.push_back({"@" + shown, std::make_shared<const std::string>(name)});
-  return luaL_loadbufferx(state_, text.data(), text.size(), files_.back().chunk.c_str(), "t") ==
-         LUA_OK;
+  const bool good = luaL_loadbufferx(state_, text.data(), text.size(), files_.back().chunk.c_str(),
+                                     "t") == LUA_OK;
+  if (!good) files_.pop_back();
+  return good;
 }
 
 Status Machine::call(int arguments, int results) {
@@ -94,7 +90,7 @@ Error Machine::error_of(int status) {
   size_t size = 0;
   const char* const text =
       lua_type(state_, -1) == LUA_TSTRING ? lua_tolstring(state_, -1, &size) : nullptr;
-  return {shown_lines(text != nullptr ? std::string_view(text, size) : "an error without a text")};
+  return {shown_lines(text != nullptr ? std::string(text, size) : "an error without a text")};
 }
 
 int Machine::add_traceback(lua_State* state) {
@@ -110,12 +106,26 @@ int Machine::add_traceback(lua_State* state) {
 void Machine::spend(uint64_t steps) {
   const uint64_t room = std::numeric_limits<uint64_t>::max() - steps_;
   steps_ += std::min(steps, room);
-  if (is_spent() || stopped_) on_count(state_, nullptr);
+  if (steps_ >= next_look_ || is_spent() || stopped_) look();
 }
 
-bool Machine::is_spent() const { return steps_ + taken_ / kBytesPerStep > limits_.steps; }
+void Machine::look() {
+  next_look_ =
+      steps_ + std::min(kStepsPerFunctionLook, std::numeric_limits<uint64_t>::max() - steps_);
+  on_count(state_, nullptr);
+}
 
-double Machine::seconds_used() const { return thread_seconds() - begin_; }
+void Machine::need(size_t bytes) {
+  if (used_ <= limits_.memory && bytes <= limits_.memory - used_) return;
+  stop(fmt::format("the script takes more than {} of memory", format_bytes(limits_.memory)));
+}
+
+bool Machine::is_spent() const {
+  const uint64_t allocated = taken_ / kBytesPerStep;
+  return allocated > limits_.steps || steps_ > limits_.steps - allocated;
+}
+
+bool Machine::is_late() const { return thread_seconds() - begin_ > limits_.seconds; }
 
 void Machine::on_count(lua_State* state, lua_Debug* where) {
   Machine& self = of(state);
@@ -124,13 +134,17 @@ void Machine::on_count(lua_State* state, lua_Debug* where) {
     lua_pushlstring(state, self.stop_text_.data(), self.stop_text_.size());
     lua_error(state);
   }
-  if (self.is_spent()) {
-    self.stop(fmt::format("the script takes more than {} steps", format_count(self.limits_.steps)));
-  }
-  if (self.seconds_used() > self.limits_.seconds) {
-    self.stop(fmt::format("the script takes more than {} of processor time",
-                          format_duration(self.limits_.seconds)));
-  }
+  if (self.is_spent()) self.stop(self.too_many_steps());
+  if (self.is_late()) self.stop(self.too_late());
+}
+
+std::string Machine::too_many_steps() const {
+  return fmt::format("the script takes more than {} steps", format_count(limits_.steps));
+}
+
+std::string Machine::too_late() const {
+  return fmt::format("the script takes more than {} of processor time",
+                     format_duration(limits_.seconds));
 }
 
 void Machine::stop(const std::string& why) {

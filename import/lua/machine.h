@@ -55,6 +55,12 @@ class Machine {
   /// that is too much.
   void spend(uint64_t steps);
 
+  /// The same for what may take seconds and counts as less.
+  void look();
+
+  /// The same for `bytes` that a function of ours is about to take beside what the script holds.
+  void need(size_t bytes);
+
   /// Whether a limit was met: then every protected call fails.
   bool stopped() const { return stopped_; }
 
@@ -81,21 +87,24 @@ class Machine {
 
   void* take(void* pointer, size_t old_size, size_t new_size);
   void refuse(std::string why);
+  std::string too_many_steps() const;
+  std::string too_late() const;
   bool is_spent() const;
+  bool is_late() const;
   [[noreturn]] void stop(const std::string& why);
   void find_line(Header& header) const;
   std::string line_now() const;
   Error error_of(int status);
-  double seconds_used() const;
 
   const Limits limits_;
   lua_State* state_ = nullptr;
   std::vector<File> files_;
-  size_t used_ = 0;       ///< bytes
-  uint64_t taken_ = 0;    ///< bytes, of all allocations together
-  uint64_t steps_ = 0;    ///< without those of `taken_`
-  uint64_t objects_ = 0;  ///< allocations so far
-  double begin_ = 0.0;    ///< of the thread's processor time
+  size_t used_ = 0;         ///< bytes
+  uint64_t taken_ = 0;      ///< bytes, of all allocations together
+  uint64_t steps_ = 0;      ///< without those of `taken_`
+  uint64_t next_look_ = 0;  ///< of spend() at the clock, by steps_
+  uint64_t objects_ = 0;    ///< allocations so far
+  double begin_ = 0.0;      ///< of the thread's processor time
   bool stopped_ = false;
   bool hurried_ = false;      ///< the next instruction looks at the limits
   std::string stop_text_;     ///< why it is stopped, with file, line and traceback

@@ -115,6 +115,8 @@ std::vector<PlaceMatrix> read_copies(lua_State* state, int at) {
                static_cast<lua_Integer>(kMostCopies));
   }
   Machine::of(state).spend(16 * static_cast<uint64_t>(count));
+  // The matrices, and the file of them.
+  Machine::of(state).need(3 * sizeof(PlaceMatrix) * static_cast<size_t>(count));
   std::vector<PlaceMatrix> places;
   places.reserve(static_cast<size_t>(count));
   for (lua_Integer i = 1; i <= count; ++i) {
@@ -125,6 +127,8 @@ std::vector<PlaceMatrix> read_copies(lua_State* state, int at) {
     const Mat4 matrix = Copy(state, i).matrix();
     if (!can_be_copied(matrix)) luaL_error(state, "copy %I is flat or too small to be seen", i);
     places.emplace_back(matrix);
+    if (i % 16 == 0)
+      Machine::of(state).look();  // tables may have millions of slots that were emptied
     lua_pop(state, 1);
   }
   return places;

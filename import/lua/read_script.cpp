@@ -1,5 +1,7 @@
 #include "import/lua/read_script.h"
 
+#include <atomic>
+#include <cstddef>
 #include <cstdint>
 #include <map>
 #include <mutex>
@@ -18,6 +20,10 @@ namespace hyades::core::lua {
 
 namespace {
 
+/// Bytes that all scripts of the program hold of what places() has made.
+constexpr size_t kMostMade = size_t{1} << 30;
+std::atomic<size_t> made_in_all = 0;
+
 /// A script that asks for the frame runs so often at most.
 constexpr int64_t kMostFrames = 10'000;
 
@@ -35,6 +41,10 @@ class ScriptSource : public SceneSource {
  public:
   ScriptSource(AssetResolver& files, std::string script)
       : files_(files), script_(std::move(script)) {}
+
+  ~ScriptSource() override { made_in_all -= made_bytes_; }
+  ScriptSource(const ScriptSource&) = delete;
+  ScriptSource& operator=(const ScriptSource&) = delete;
 
   Result<SceneSections> sections(const SceneRequest& request) const override {
     const std::string key = key_of(request);
@@ -110,7 +120,15 @@ class ScriptSource : public SceneSource {
 
   Result<ScriptResult> run_once(const ScriptRequest& run) const {
     auto result = run_script(run);
-    if (result) made_.insert(result->made.begin(), result->made.end());
+    if (!result) return result;
+    for (auto& [name, bytes] : result->made) {
+      if (!made_.emplace(name, bytes).second) continue;
+      made_bytes_ += bytes.size();
+      made_in_all += bytes.size();
+      if (made_in_all <= kMostMade) continue;
+      return Error{fmt::format("{}: more than {} of copies, of all scripts and frames together",
+                               script_, format_bytes(kMostMade))};
+    }
     return result;
   }
 
@@ -120,6 +138,7 @@ class ScriptSource : public SceneSource {
   // Guarded by mutex_.
   mutable std::map<std::string, SceneSections> told_;
   mutable std::map<std::string, Bytes> made_;
+  mutable size_t made_bytes_ = 0;
 };
 
 }  // namespace

@@ -11,6 +11,7 @@
 #include <fmt/format.h>
 
 #include "core/base/hash.h"
+#include "core/base/printable.h"
 #include "core/base/text.h"
 #include "core/geometry/read_places.h"
 #include "import/lua/libraries.h"
@@ -26,6 +27,21 @@ namespace {
 
 constexpr size_t kMaxDepth = 16;
 constexpr size_t kMaxScript = size_t{4} << 20;
+constexpr size_t kMostParameters = 1000;
+
+/// That an included file runs, however that ends.
+class Opening {
+ public:
+  Opening(std::vector<std::string>& open, const std::string& name) : open_(open) {
+    open_.push_back(name);
+  }
+  ~Opening() { open_.pop_back(); }
+  Opening(const Opening&) = delete;
+  Opening& operator=(const Opening&) = delete;
+
+ private:
+  std::vector<std::string>& open_;
+};
 
 class Run {
  public:
@@ -46,9 +62,12 @@ class Run {
           "return {{objects = {{...}}}}",
           request_.script, lua_isnil(state, -1) ? "nothing" : luaL_typename(state, -1))};
     }
-    auto tree = tree_of(state, -1);
-    if (!tree) return told_beside(request_.script, tree.error());
-    result_.tree = *tree;
+    // Within a call, for the limits hold there.
+    lua_pushcfunction(state, &Run::read_tree);
+    lua_insert(state, -2);
+    lua_pushlightuserdata(state, this);
+    if (auto read = machine_.call(2, 0); !read) return read.error();
+    if (!bad_tree_.message.empty()) return told_beside(request_.script, bad_tree_);
     return std::move(result_);
   }
 
@@ -63,7 +82,7 @@ class Run {
                                format_bytes(bytes->size()), format_bytes(kMaxScript))};
     }
     if (machine_.load({bytes->chars(), bytes->size()}, shown, name)) return {};
-    const Error error{lua_tostring(machine_.state(), -1)};
+    const Error error{printable(lua_tostring(machine_.state(), -1))};
     lua_pop(machine_.state(), 1);
     return error;
   }
@@ -73,8 +92,8 @@ class Run {
     std::string known;
     for (const Parameter& parameter : result_.parameters) {
       names.push_back(parameter.name);
-      known += fmt::format("\n  {} = {}", parameter.name, parameter.usual);
-      if (!parameter.help.empty()) known += "  (" + parameter.help + ")";
+      known += fmt::format("\n  {} = {}", parameter.name, printable(parameter.usual));
+      if (!parameter.help.empty()) known += "  (" + printable(parameter.help) + ")";
     }
     for (const auto& [name, value] : request_.set) {
       if (std::find(names.begin(), names.end(), name) != names.end()) continue;
@@ -90,6 +109,18 @@ class Run {
 
   static Run& of(lua_State* state) {
     return *static_cast<Run*>(lua_touserdata(state, lua_upvalueindex(1)));
+  }
+
+  /// Reads the table at 1.
+  static int read_tree(lua_State* state) {
+    Run& run = *static_cast<Run*>(lua_touserdata(state, 2));
+    auto tree = tree_of(state, 1);
+    if (tree) {
+      run.result_.tree = *tree;
+    } else {
+      run.bad_tree_ = tree.error();
+    }
+    return 0;
   }
 
   /// Opens the libraries and the functions below.
@@ -121,6 +152,9 @@ class Run {
                         setting.name.c_str(), setting.usual.c_str(), same->usual.c_str());
     }
     if (same == run.result_.parameters.end()) {
+      if (run.result_.parameters.size() >= kMostParameters) {
+        return luaL_error(state, "more than %d parameters", static_cast<int>(kMostParameters));
+      }
       run.result_.parameters.push_back({setting.name, setting.usual, setting.help});
     }
     return 1;
@@ -162,9 +196,10 @@ class Run {
     if (auto loaded = run.load(*name); !loaded) {
       return luaL_error(state, "include: %s", loaded.error().message.c_str());
     }
-    run.open_.push_back(*name);
-    lua_call(state, 0, 1);
-    run.open_.pop_back();
+    {
+      const Opening opening(run.open_, *name);
+      lua_call(state, 0, 1);
+    }
     lua_createtable(state, 1, 0);
     lua_pushvalue(state, -2);
     lua_rawseti(state, -2, 1);
@@ -176,9 +211,13 @@ class Run {
   static int places(lua_State* state) {
     Run& run = of(state);
     const Bytes file = places_bytes(read_copies(state, 1));
+    if (file.size() > run.request_.limits.memory - run.made_bytes_) {
+      return luaL_error(state, "more than %s of copies in all",
+                        format_bytes(run.request_.limits.memory).c_str());
+    }
     const Sha256 hash = sha256({file.chars(), file.size()});
     const std::string name = "places-" + to_hex(std::span(hash).first(8)) + ".ply";
-    run.result_.made.emplace(name, file);
+    if (run.result_.made.emplace(name, file).second) run.made_bytes_ += file.size();
     const std::string reference = run.request_.made + name;
     lua_pushlstring(state, reference.data(), reference.size());
     return 1;
@@ -186,6 +225,8 @@ class Run {
 
   const ScriptRequest& request_;
   ScriptResult result_;
+  Error bad_tree_;  ///< why what it returns is no tree
+  size_t made_bytes_ = 0;
   std::vector<std::string> open_;  ///< included files that are running
   Machine machine_;
 };

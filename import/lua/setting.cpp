@@ -5,11 +5,27 @@
 
 #include <fmt/format.h>
 
+#include "core/base/text.h"
 #include "core/job/read_values.h"
 
 namespace hyades::core::lua {
 
 namespace {
+
+/// Bytes of a default and of what explains it.
+constexpr size_t kMostShown = 1000;
+
+/// The text at `at`, which people are shown.
+std::string text_to_show(lua_State* state, int at, const char* what) {
+  size_t size = 0;
+  const char* const text = lua_tolstring(state, at, &size);
+  if (size > kMostShown) {
+    luaL_error(state, "%s of parameter %s is a text of %s, expected at most %s", what,
+               lua_tostring(state, 1), format_bytes(size).c_str(),
+               format_bytes(kMostShown).c_str());
+  }
+  return {text, size};
+}
 
 /// Pushes a number as the default at 2 is one; false: the text is none.
 bool push_number(lua_State* state, const std::string& text) {
@@ -57,7 +73,7 @@ std::string usual_value(lua_State* state) {
       return lua_isinteger(state, 2) != 0 ? fmt::format("{}", lua_tointeger(state, 2))
                                           : fmt::format("{}", lua_tonumber(state, 2));
     case LUA_TSTRING:
-      return fmt::format("\"{}\"", lua_tostring(state, 2));
+      return '"' + text_to_show(state, 2, "the default") + '"';
     default:
       luaL_error(state,
                  "the default of parameter %s is a %s, expected a number, a text, true or "
@@ -78,7 +94,10 @@ Setting read_setting(lua_State* state, const ScriptSettings& set) {
                setting.name.substr(0, 60).c_str());
   }
   setting.usual = usual_value(state);
-  setting.help = luaL_optstring(state, 3, "");
+  if (!lua_isnoneornil(state, 3)) {
+    luaL_checkstring(state, 3);
+    setting.help = text_to_show(state, 3, "the explanation");
+  }
   const std::string* given = nullptr;
   for (const auto& [name, value] : set) {
     if (name == setting.name) given = &value;

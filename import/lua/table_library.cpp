@@ -1,3 +1,5 @@
+#include <algorithm>
+#include <cstddef>
 #include <cstdint>
 
 #include "import/lua/libraries.h"
@@ -17,48 +19,85 @@ lua_Integer length_at(lua_State* state, int at) {
   return static_cast<lua_Integer>(lua_rawlen(state, at));
 }
 
-/// Counts the items from `first` to `last`.
-void spend_range(lua_State* state, lua_Integer first, lua_Integer last) {
+/// How many tables are asked for an item that the one at `at` does not have, itself among them: it
+/// may pass the question on (`event` is "__index" or "__newindex"), and so may that one. Of
+/// functions that are asked Lua counts itself.
+uint64_t tables_asked(lua_State* state, int at, const char* event) {
+  constexpr uint64_t kMost = 2000;  // after which Lua calls it a loop
+  const int top = lua_gettop(state);
+  lua_pushvalue(state, at);
+  uint64_t asked = 1;
+  while (asked < kMost && luaL_getmetafield(state, -1, event) == LUA_TTABLE) {
+    lua_replace(state, -2);
+    ++asked;
+  }
+  lua_settop(state, top);
+  return asked;
+}
+
+/// Counts the items from `first` to `last` of the list at `list`, which are read and written there.
+void spend_range(lua_State* state, int list, lua_Integer first, lua_Integer last) {
+  const uint64_t tables =
+      tables_asked(state, list, "__index") + tables_asked(state, list, "__newindex") - 1;
+  Machine& machine = Machine::of(state);
+  machine.spend(tables);
   if (last < first) return;
-  Machine::of(state).spend(static_cast<uint64_t>(last) - static_cast<uint64_t>(first) + 1);
+  const uint64_t items = static_cast<uint64_t>(last) - static_cast<uint64_t>(first) + 1;
+  machine.spend(items > UINT64_MAX / tables ? UINT64_MAX : items * tables);
 }
 
 int guard_insert(lua_State* state) {
   const lua_Integer length = length_at(state, 1);
-  if (lua_gettop(state) == 3) spend_range(state, luaL_checkinteger(state, 2), length);
+  const lua_Integer first = lua_gettop(state) == 3 ? luaL_checkinteger(state, 2) : length + 1;
+  spend_range(state, 1, first, length);
   return call_original(state);
 }
 
 int guard_remove(lua_State* state) {
   const lua_Integer length = length_at(state, 1);
-  if (lua_gettop(state) > 1) spend_range(state, luaL_checkinteger(state, 2), length);
+  const lua_Integer first = lua_gettop(state) > 1 ? luaL_checkinteger(state, 2) : length;
+  spend_range(state, 1, first, length);
   return call_original(state);
 }
 
 /// concat(list, between, first, last).
 int guard_concat(lua_State* state) {
   const lua_Integer length = length_at(state, 1);
-  spend_range(state, luaL_optinteger(state, 3, 1), luaL_optinteger(state, 4, length));
+  spend_range(state, 1, luaL_optinteger(state, 3, 1), luaL_optinteger(state, 4, length));
   return call_original(state);
 }
 
 /// unpack(list, first, last).
 int guard_unpack(lua_State* state) {
   const lua_Integer length = length_at(state, 1);
-  spend_range(state, luaL_optinteger(state, 2, 1), luaL_optinteger(state, 3, length));
+  spend_range(state, 1, luaL_optinteger(state, 2, 1), luaL_optinteger(state, 3, length));
   return call_original(state);
 }
 
 int guard_sort(lua_State* state) {
+  if (lua_iscfunction(state, 2) != 0) {
+    return luaL_error(state, "a comparison that is a built-in function, expected one of Lua");
+  }
   const lua_Integer length = length_at(state, 1);
-  spend_range(state, 1, 8 * length);
+  size_t longest = 1;  // text, of which each comparison may look at all
+  for (lua_Integer i = 1; i <= length && lua_isnoneornil(state, 2); ++i) {
+    if (lua_rawgeti(state, 1, i) == LUA_TSTRING)
+      longest = std::max(longest, size_t{lua_rawlen(state, -1)});
+    lua_pop(state, 1);
+  }
+  constexpr size_t kPerStep = 16;  // bytes
+  Machine::of(state).spend(8 * static_cast<uint64_t>(length) * (longest / kPerStep));
+  spend_range(state, 1, 1, 8 * length);
   return call_original(state);
 }
 
 /// move(list, first, last, to, target).
 int guard_move(lua_State* state) {
   (void)length_at(state, 1);
-  spend_range(state, luaL_checkinteger(state, 2), luaL_checkinteger(state, 3));
+  const lua_Integer first = luaL_checkinteger(state, 2);
+  const lua_Integer last = luaL_checkinteger(state, 3);
+  spend_range(state, 1, first, last);
+  if (lua_gettop(state) >= 5 && lua_istable(state, 5)) spend_range(state, 5, first, last);
   return call_original(state);
 }
 

@@ -5,12 +5,16 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
 #include <fmt/format.h>
 
+#include "core/base/printable.h"
+#include "core/base/text.h"
 #include "core/job/yaml_build.h"
 #include "import/lua/machine.h"
 
@@ -46,7 +50,7 @@ class Reader {
       case LUA_TNUMBER:
         return number(at, around);
       case LUA_TSTRING:
-        return placed(yaml_text(text_at(at)), around);
+        return text(at, around);
       case LUA_TTABLE:
         return table(lua_absindex(state_, at), around);
       default:
@@ -68,14 +72,27 @@ class Reader {
   YamlPtr refuse(const YamlPlace& where, const std::string& what) {
     const std::string line =
         where.line > 0 ? fmt::format("{}:{}: ", *where.file, where.line) : std::string();
-    error_ = {line + (path_.empty() ? "what the script returns" : path_) + " " + what};
+    error_ = {line + (path_.empty() ? "what the script returns" : printable(path_)) + " " + what};
     return nullptr;
   }
 
-  std::string text_at(int at) const {
+  /// The text at `at`, of which each copy counts: a script that holds it once may name it a million
+  /// times. Nothing, after refuse(), beyond what a job's text may have.
+  std::optional<std::string> text_at(int at, const YamlPlace& around) {
     size_t size = 0;
     const char* const text = lua_tolstring(state_, at, &size);
-    return {text, size};
+    if (size > kMaxYamlBytes - bytes_) {
+      (void)refuse(around, fmt::format("lies beyond {} of text, which is what a job may have",
+                                       format_bytes(kMaxYamlBytes)));
+      return std::nullopt;
+    }
+    bytes_ += size;
+    return std::string(text, size);
+  }
+
+  YamlPtr text(int at, const YamlPlace& around) {
+    auto text = text_at(at, around);
+    return text ? placed(yaml_text(std::move(*text)), around) : nullptr;
   }
 
   YamlPtr number(int at, const YamlPlace& around) {
@@ -99,6 +116,7 @@ class Reader {
   YamlPtr table(int at, const YamlPlace& around) {
     const YamlPlace made = machine_.made_at(lua_topointer(state_, at));
     const YamlPlace& where = made.line > 0 ? made : around;
+    machine_.look();  // tables may have millions of slots that were emptied
     if (++depth_ > kMaxYamlDepth || lua_checkstack(state_, 4) == 0) {
       return refuse(
           where, fmt::format("lies deeper than {} tables (a table within itself?)", kMaxYamlDepth));
@@ -154,7 +172,10 @@ class Reader {
 
   /// The key on top of the stack, for complaints.
   std::string shown_key() const {
-    if (lua_type(state_, -1) == LUA_TSTRING) return "'" + text_at(-1).substr(0, 60) + "'";
+    constexpr size_t kShown = 60;
+    if (lua_type(state_, -1) == LUA_TSTRING) {
+      return "'" + printable(std::string_view(lua_tostring(state_, -1)).substr(0, kShown)) + "'";
+    }
     if (lua_isinteger(state_, -1) != 0) return fmt::format("{}", lua_tointeger(state_, -1));
     if (lua_type(state_, -1) == LUA_TNUMBER) return fmt::format("{}", lua_tonumber(state_, -1));
     return std::string("that is a ") + luaL_typename(state_, -1);
@@ -192,7 +213,12 @@ class Reader {
       ++count_;  // the reader of jobs counts keys too
       const int type = lua_type(state_, -1);
       if (type == LUA_TSTRING) {
-        keys.push_back({text_at(-1)});
+        auto text = text_at(-1, where);
+        if (!text) {
+          lua_pop(state_, 1);
+          return false;
+        }
+        keys.push_back({std::move(*text)});
       } else if (type == LUA_TNUMBER && of_frames) {
         keys.push_back({shown_key(), lua_tonumber(state_, -1)});
       } else {
@@ -220,6 +246,7 @@ class Reader {
   std::string path_;
   Error error_;
   uint64_t count_ = 0;
+  size_t bytes_ = 0;  ///< of texts
   int depth_ = 0;
   bool holds_frames_ = false;  ///< the table that comes next maps frames to values
 };

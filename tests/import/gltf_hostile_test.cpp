@@ -28,8 +28,7 @@ std::string trouble_of(const core::SceneSource& source, const core::YamlNode& ob
 }
 
 /// What is wrong with a scene and all of its meshes; empty: nothing.
-std::string trouble(const std::string& glb) {
-  const auto source = read_glb(glb);
+std::string trouble(const core::Result<std::shared_ptr<const core::SceneSource>>& source) {
   if (!source) return source.error().message;
   core::SceneRequest request;
   request.loop = true;
@@ -45,6 +44,7 @@ std::string trouble(const std::string& glb) {
   return objects == nullptr ? "" : trouble_of(**source, *objects->value);
 }
 
+std::string trouble(const std::string& glb) { return trouble(read_glb(glb)); }
 std::string trouble(const GltfBuilder& b) { return trouble(b.glb()); }
 
 TEST(GltfHostile, TheSquareIsFine) { EXPECT_EQ(trouble(one_square()), ""); }
@@ -114,6 +114,20 @@ TEST(GltfHostile, CountsAreCheckedBeforeMemoryIsTaken) {
   EXPECT_THAT(trouble(b), HasSubstr("accessors[0].count is 1e+30, expected a whole number"));
   b.json["accessors"][0]["count"] = -4;
   EXPECT_THAT(trouble(b), HasSubstr("accessors[0].count is -4"));
+}
+
+TEST(GltfHostile, AFileThatIsNamedManyTimesCountsOnce) {
+  GltfBuilder b = one_square();
+  b.json["accessors"][0].erase("bufferView");
+  b.json["accessors"][0]["count"] = 5000;
+  nlohmann::json json = b.json;
+  json["buffers"] = nlohmann::json::array();
+  for (int i = 0; i < 16; ++i) json["buffers"].push_back({{"byteLength", 1000}, {"uri", "x.bin"}});
+  FilesInMemory files;
+  files.files["a.gltf"] = json.dump();
+  files.files["x.bin"] = std::string(1000, '\0');
+  EXPECT_THAT(trouble(core::read_gltf(files, "a.gltf")),
+              HasSubstr("accessors[0] has 5000 elements, more than the file has bytes"));
 }
 
 TEST(GltfHostile, ViewsBeyondTheirBuffer) {

@@ -6,6 +6,7 @@
 namespace hyades::core {
 namespace {
 
+using test::job_complaints;
 using test::lua_value;
 using test::run_lua;
 using testing::AllOf;
@@ -52,6 +53,11 @@ TEST(LuaSandbox, WhatDoesNotEndIsEnded) {
            "local t = {} for i = 1, 100000 do t[i] = i end while true do pairs(t) end",
            "while true do local s = ('x'):rep(1000000) end",
            "while true do string.find(('x'):rep(100000), 'y', 1, true) end",
+           // Each item is looked up in a thousand tables, which Lua does not count.
+           "local t = {} for i = 1, 1000 do t = setmetatable({}, {__index = t}) end "
+           "table.move(t, 1, 100000, 1, {})",
+           "local t = {} for i = 1, 1000 do t = setmetatable({}, {__newindex = t}) end "
+           "table.move({}, 1, 100000, 1, t)",
        }) {
     EXPECT_THAT(attack(script), AllOf(StartsWith("a/scene.lua:1: "), HasSubstr(too_long)))
         << script;
@@ -70,6 +76,165 @@ TEST(LuaSandbox, WhatIsCopiedCounts) {
   limits.steps = lua::Limits().steps;
   EXPECT_THAT(run_lua("while true do end", {}, limits).error,
               HasSubstr("takes more than 0.20 s of processor time"));
+}
+
+TEST(LuaSandbox, WhatIsReturnedNamesFilesOfTheFolderAlone) {
+  const auto returns = [](const std::string& sections) {
+    MemoryAssets files;
+    files.add("in/s.lua", "return {" + sections + "}");
+    files.add("x.png", "a picture");
+    files.add("in/more.yaml", "textures: {t: {type: image, file: ../x.png}}\n");
+    files.add("in/a.lua", "return {textures = {t = {type = 'image', like = 'u'}}}");
+    files.add("in/b.lua", "return {textures = {u = {file = '../x.png'}}}");
+    return job_complaints("include: in/s.lua\n", std::move(files));
+  };
+  const char* const leads_out = "in/s.lua:1: ";
+  for (const char* sections : {
+           "textures = {t = {type = 'image', file = '../x.png'}}",
+           "textures = {t = {type = 'image', file = 'a/../../x.png'}}",
+           "environment = {image = '../x.png'}",
+           "objects = {o = {mesh = '../x.png'}}",
+           "objects = {o = {group = {objects = {p = {mesh = '../x.png'}}}}}",
+           "groups = {g = {objects = {p = {mesh = '../x.png'}}}}",
+           "objects = {o = {gltf = '../x.glb'}}",
+           "objects = {o = {group = {objects = {p = {pbrt = '../x.pbrt'}}}}}",
+           "media = {file = '../x.yaml'}",
+           "media = {file = {'in.yaml', '../x.yaml'}}",
+           "include = '../x.yaml'",
+           "include = {'../x.yaml'}",
+           "include = {lua = '../x.lua'}",
+           "color = {config = '../c.ocio'}",
+       }) {
+    EXPECT_THAT(returns(sections),
+                AllOf(HasSubstr(leads_out), HasSubstr("leads out of the folder")))
+        << sections;
+  }
+  EXPECT_THAT(returns("textures = {t = {type = 'image', file = '/etc/x.png'}}"),
+              HasSubstr("in/s.lua:1: file of texture 't': '/etc/x.png' is an absolute path"));
+  EXPECT_THAT(
+      returns("include = 'more.yaml'"),
+      HasSubstr("in/more.yaml:1:35: file of texture 't': '../x.png' leads out of the folder"));
+  EXPECT_THAT(returns("include = {'a.lua', 'b.lua'}"),
+              HasSubstr("in/b.lua:1: file of texture 't': '../x.png' leads out of the folder"));
+}
+
+TEST(LuaSandbox, ItsColourConfigurationNamesFilesOfTheFolderAlone) {
+  MemoryAssets files;
+  files.add("in/c.ocio", "- !<FileTransform> {src: ../x.lut}\n- !<FileTransform> {src: y.lut}\n");
+  files.add("x.lut", "a table");
+  files.add("in/y.lut", "a table");
+  files.add("in/s.lua", "return {color = {config = 'c.ocio'}}");
+  const auto found = [&](const std::string& job) {
+    Job read;
+    EXPECT_EQ(job_complaints(job, files, &read), "");
+    return read.color ? read.color->files : std::vector<std::string>();
+  };
+  EXPECT_EQ(found("color: {config: in/c.ocio}\n"), (std::vector<std::string>{"x.lut", "in/y.lut"}));
+  EXPECT_EQ(found("include: in/s.lua\n"), std::vector<std::string>{"in/y.lut"});
+}
+
+TEST(LuaSandbox, ATextThatIsReturnedOftenCountsEachTime) {
+  EXPECT_THAT(attack("local s = ('x'):rep(1000000) local t = {} for i = 1, 100 do t[i] = s end "
+                     "do return {t = t} end"),
+              HasSubstr("t[34] lies beyond 32.0 MiB of text, which is what a job may have"));
+}
+
+TEST(LuaSandbox, WhatIsMadeBesideTheScriptCounts) {
+  lua::Limits limits = small_limits();
+  limits.steps = lua::Limits().steps;
+  const auto run = [&](const std::string& script) { return run_lua(script, {}, limits).error; };
+  // One table of 16 bytes an item, which is 48 a copy and as much in the file.
+  EXPECT_THAT(run("local c = {} local t = {} for i = 1, 500000 do t[i] = c end places(t)"),
+              HasSubstr("the script takes more than 32.0 MiB of memory"));
+  EXPECT_THAT(run("for k = 1, 100 do local t = {} for i = 1, 20000 do t[i] = {at = {k, i, 0}} end "
+                  "places(t) end"),
+              HasSubstr("more than 32.0 MiB of copies in all"));
+  EXPECT_THAT(run("local t = {} for i = 1, 500000 do t[i] = i end pairs(t)"),
+              HasSubstr("the script takes more than 32.0 MiB of memory"));
+}
+
+TEST(LuaSandbox, TimeThatFewInstructionsTakeCounts) {
+  lua::Limits limits;
+  limits.seconds = 0.2;
+  // Fewer instructions than lie between two looks at the clock: all the time is in Lua's library.
+  for (const char* script : {
+           "for i = 1, 100 do local s = ('x'):rep(15000000 + i) end",
+           "local s = ('a'):rep(10000) for i = 1, 100 do s:find('a*b') end",
+       }) {
+    EXPECT_THAT(run_lua(script, {}, limits).error,
+                HasSubstr("takes more than 0.20 s of processor time"))
+        << script;
+  }
+  EXPECT_THAT(run_lua("table.sort({3, 1, 2}, rawequal)").error,
+              HasSubstr("a comparison that is a built-in function, expected one of Lua"));
+}
+
+TEST(LuaSandbox, NothingThatItSaysSteersATerminal) {
+  for (const char* script : {
+           "error('\\27[31m')",
+           "param('\\27[31m', 1)",
+           "do return {['\\27[31m'] = print} end",
+           "do return {1, ['\\27[31m'] = 1} end",
+           "include('\\xC2\\x9B31m.lua')",
+           "do return {v = {[true] = 1}} end",
+       }) {
+    const std::string said = attack(script);
+    EXPECT_THAT(said, Not(HasSubstr("\x1b"))) << script;
+    EXPECT_THAT(said, Not(HasSubstr("\xC2\x9B"))) << script;
+    EXPECT_NE(said, "") << script;
+  }
+  EXPECT_THAT(run_lua("x = \x1b[31m").error, AllOf(Not(HasSubstr("\x1b")), Not(StartsWith("ERR"))));
+  const std::string parameters =
+      run_lua("param('n', '\\27[31m', '\\27[32m') return {}", {{"m", "1"}}).error;
+  EXPECT_THAT(parameters, AllOf(HasSubstr("n = \"?[31m\"  (?[32m)"), Not(HasSubstr("\x1b"))));
+}
+
+TEST(LuaSandbox, WhatFramesDifferInCountsByItsSize) {
+  MemoryAssets files;
+  files.add("s.lua", "return {frames = '1-9999', name = ('x'):rep(1000000) .. frame()}");
+  EXPECT_THAT(job_complaints("include: s.lua\nframes: 1-9999\n", files),
+              HasSubstr("its frames differ in more than 1048576 values"));
+  files.add("s.lua", "return {frames = '1-9999', [('x'):rep(1000000) .. frame()] = 1}");
+  EXPECT_THAT(job_complaints("include: s.lua\nframes: 1-9999\n", files),
+              HasSubstr("its frames differ in more than 1048576 values"));
+}
+
+TEST(LuaSandbox, WhatItPrintsIsBounded) {
+  EXPECT_THAT(attack("print(('x'):rep(2000000))"), HasSubstr("a line of more than 1048576 bytes"));
+  EXPECT_THAT(attack("local s = ('x'):rep(1000000) print(s, s, s)"),
+              HasSubstr("a line of more than 1048576 bytes"));
+}
+
+TEST(LuaSandbox, FilesThatAreNoLuaLeaveNothing) {
+  MemoryAssets files;
+  files.add("a/bad.lua", "this is no Lua");
+  files.add("a/raises.lua", "error('no')");
+  EXPECT_THAT(run_lua("for i = 1, 100 do pcall(include, 'raises.lua') end\n"
+                      "include('raises.lua')",
+                      {}, {}, files)
+                  .error,
+              AllOf(HasSubstr("a/raises.lua:1: no"), Not(HasSubstr("includes itself"))));
+  EXPECT_THAT(
+      run_lua("for i = 1, 100 do pcall(include, 'bad.lua') end\nerror('done')", {}, {}, files)
+          .error,
+      HasSubstr("a/scene.lua:2: done"));
+}
+
+TEST(LuaSandbox, SortingLongTextsCostsTheirLength) {
+  EXPECT_THAT(attack("local s = ('x'):rep(1000000) local t = {} for i = 1, 100 do t[i] = s end "
+                     "table.sort(t)"),
+              HasSubstr("takes more than 5,000,000 steps"));
+  EXPECT_THAT(attack("string.find(('a'):rep(30000), '[' .. ('b'):rep(100000) .. ']*c')"),
+              HasSubstr("this pattern may take too long"));
+}
+
+TEST(LuaSandbox, ParametersAreShort) {
+  EXPECT_THAT(run_lua("param('n', ('x'):rep(1001)) return {}").error,
+              HasSubstr("the default of parameter n is a text of 1001 B"));
+  EXPECT_THAT(run_lua("param('n', 1, ('x'):rep(1001)) return {}").error,
+              HasSubstr("the explanation of parameter n is a text of 1001 B"));
+  EXPECT_THAT(run_lua("for i = 1, 1001 do param('n' .. i, 1) end return {}").error,
+              HasSubstr("more than 1000 parameters"));
 }
 
 TEST(LuaSandbox, LimitsAreNotCaught) {

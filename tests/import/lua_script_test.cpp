@@ -243,7 +243,7 @@ TEST(LuaFrames, WhatCannotChangeIsToldWithItsPath) {
   MemoryAssets files;
   files.add("s.lua",
             "local t = {}\nfor i = 1, 1000 do t['b' .. i] = {shape = 'sphere', radius = i + "
-            "frame()} end\nreturn {objects = t}");
+            "frame(), material = ('m'):rep(6400) .. frame()} end\nreturn {objects = t}");
   EXPECT_THAT(job_complaints("include: s.lua\nframes: 1-5000\n", files),
               HasSubstr("its frames differ in more than 1048576 values"));
   EXPECT_THAT(job_complaints("include: s.lua\nframes: 1-10001\n", files),

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "core/job/parse.h"
 #include "core/job/scene_document.h"
 #include "import/job_files.h"
 #include "import/write_scene_job.h"
@@ -43,6 +44,12 @@ class Links : public testing::Test {
     const auto files = JobFiles::open(path(scene), options);
     if (!files) return files.error().message;
     // Jobs name scenes; those become documents when they are opened.
+    if (is_script_file(scene)) {
+      const auto text = (*files)->files().open((*files)->document());
+      Diagnostics diagnostics;
+      parse_job({text->chars(), text->size()}, path(scene), (*files)->files(), diagnostics);
+      return diagnostics.to_string();
+    }
     if (is_scene_file(scene)) return {};
     const auto bytes = (*files)->files().open("scene/a.obj.files/scene.yaml");
     return bytes ? std::string() : bytes.error().message;
@@ -50,6 +57,15 @@ class Links : public testing::Test {
 
   test::TempFolder folder_;
 };
+
+TEST_F(Links, OfScriptsStayInTheirFolderToo) {
+  link("../secrets", "scene/tex");
+  write("scene/a.lua", "return {textures = {t = {type = 'image', file = 'tex/id.png'}}}");
+  EXPECT_THAT(trouble("scene/a.lua"), HasSubstr("leads out of the scene's folder, by the link"));
+  EXPECT_EQ(trouble("scene/a.lua", true), "");
+  write("scene/b.lua", "return {textures = {t = {type = 'image', file = 'here/wood.png'}}}");
+  EXPECT_EQ(trouble("scene/b.lua"), "");
+}
 
 TEST_F(Links, ThatStayInTheScenesFolderAreFollowed) {
   link("here", "scene/tex");
