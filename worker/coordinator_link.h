@@ -1,6 +1,7 @@
 #pragma once
 
 #include <chrono>
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <string>
@@ -28,6 +29,7 @@ class CoordinatorLink {
   class Owner {
    public:
     virtual ~Owner() = default;
+    /// To be answered by heard(), when nothing is left of it but what the owner keeps.
     virtual void stream_says(v1::CoordinatorMessage message) = 0;
     /// The stream is over. Where another one is worth it the coordinator asks not to come before
     /// `retry_after` has passed.
@@ -35,7 +37,7 @@ class CoordinatorLink {
                               std::chrono::milliseconds retry_after) = 0;
   };
 
-  CoordinatorLink(std::shared_ptr<grpc::Channel> channel, std::string token, Owner& owner);
+  CoordinatorLink(const std::shared_ptr<grpc::Channel>& channel, std::string token, Owner& owner);
   /// Breaks an open stream off and waits for its end.
   ~CoordinatorLink();
   CoordinatorLink(const CoordinatorLink&) = delete;
@@ -50,6 +52,20 @@ class CoordinatorLink {
   /// Queues a message; nothing happens where no stream is open.
   void send(v1::WorkerMessage message);
 
+  /// The owner is done with a message. While it has too many of them, or too much is queued, no
+  /// more are read: a coordinator that talks without end takes no memory here.
+  void heard();
+
+  /// Messages, and bytes of these, that the owner has before it at once (the last may be larger).
+  static constexpr size_t kMostUnheard = 64;
+  static constexpr size_t kMostUnheardBytes = size_t{1} << 20U;
+  /// The same of what is queued, beyond which nothing more is read that could be answered.
+  static constexpr size_t kMostQueued = 10'000;
+  static constexpr size_t kMostQueuedBytes = size_t{256} << 20U;
+
+  /// Ends the stream that is open at once; the owner hears of it, with this reason.
+  void break_off(const std::string& reason);
+
   /// Whether everything that was sent has left this process.
   bool flowing() const;
 
@@ -60,7 +76,9 @@ class CoordinatorLink {
 
  private:
   class Stream;
+  struct Stub;
   std::shared_ptr<State> state_;
+  std::unique_ptr<Stub> stub_;  ///< not in the state: gRPC's own threads cannot end its channel
 };
 
 }  // namespace hyades::worker

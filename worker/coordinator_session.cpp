@@ -1,6 +1,7 @@
 #include "worker/coordinator_session.h"
 
 #include <algorithm>
+#include <cstddef>
 #include <utility>
 
 #include <fmt/format.h>
@@ -18,19 +19,24 @@ using std::chrono::milliseconds;
 /// How long a worker whose token is unknown all at once looks for another in its file.
 constexpr std::chrono::minutes kTokenPatience{5};
 constexpr std::chrono::hours kTellExpiryAgain{24};
+/// Bytes of this worker's name (docs/wire.md).
+constexpr size_t kLongestName = 200;
+/// A stream that lasted for so long was a good one: the first pause after it is short again.
+constexpr std::chrono::seconds kGoodStream{10};
 /// However long a coordinator asks not to be called.
 constexpr milliseconds kLongestAskedPause{60'000};
 
 }  // namespace
 
 CoordinatorSession::CoordinatorSession(const WorkerContext& worker, WorkerId id,
-                                       std::shared_ptr<grpc::Channel> channel, WorkerToken token,
+                                       const std::shared_ptr<grpc::Channel>& channel,
+                                       WorkerToken token,
                                        std::function<void(const std::string&)> new_token)
     : worker_(worker),
       id_(std::move(id)),
       token_(std::move(token)),
       new_token_(std::move(new_token)),
-      link_(std::move(channel), token_.text(), *this) {}
+      link_(channel, token_.text(), *this) {}
 
 void CoordinatorSession::tick(TimePoint now, bool ready) {
   if (ever_connected_ ? connect_at_ && now >= *connect_at_ : ready) connect(now);
@@ -41,6 +47,8 @@ void CoordinatorSession::connect(TimePoint now) {
   connect_at_.reset();
   ever_connected_ = true;
   streaming_ = true;
+  broken_off_ = false;
+  welcomed_.reset();
   link_.open();
   worker_.machine.stream_opened(now);
 }
@@ -52,9 +60,22 @@ void CoordinatorSession::finish() {
 
 void CoordinatorSession::stream_says(v1::CoordinatorMessage message) {
   worker_.loop.post([this, message = std::move(message)]() mutable {
-    if (message.has_welcome() && !welcomed(message.welcome())) return;
-    worker_.machine.coordinator_says(std::move(message), Clock::now());
+    hear(std::move(message));
+    link_.heard();
   });
+}
+
+void CoordinatorSession::hear(v1::CoordinatorMessage message) {
+  if (broken_off_) return;
+  const TimePoint now = Clock::now();
+  if (message.has_welcome() && !std::exchange(welcomed_, now) && !welcomed(message.welcome()))
+    return;
+  worker_.machine.coordinator_says(std::move(message), now);
+}
+
+void CoordinatorSession::break_off(const std::string& reason) {
+  broken_off_ = true;
+  link_.break_off(reason);
 }
 
 /// Whether the two understand each other.
@@ -67,16 +88,15 @@ bool CoordinatorSession::welcomed(const v1::Welcome& welcome) {
     worker_.loop.end(2);
     return false;
   }
-  backoff_.reset();
   told_trouble_.clear();
   ever_welcomed_ = true;
   unknown_since_.reset();
-  worker_.log.rename(welcome.name());
+  const std::string name = farm::wire_text(welcome.name()).substr(0, kLongestName);
+  worker_.log.rename(name);
   if (!welcome.machine_token().empty()) keep_token(welcome.machine_token());
   token_term_ = {welcome.token_expires_ms(), welcome.token_warn_ms()};
-  worker_.log.note(
-      LogLevel::info,
-      fmt::format("working for {} as {}", worker_.options.coordinator.address, welcome.name()));
+  worker_.log.note(LogLevel::info,
+                   fmt::format("working for {} as {}", worker_.options.coordinator.address, name));
   return true;
 }
 
@@ -99,6 +119,8 @@ void CoordinatorSession::ended(StreamEnd end, const std::string& reason, millise
     return;
   }
   if (end == StreamEnd::id_taken) renew_id();
+  // Who welcomes and hangs up at once is not called all the time.
+  if (welcomed_ && Clock::now() - *welcomed_ >= kGoodStream) backoff_.reset();
   const Duration pause = backoff_.next(std::min<Duration>(retry_after, kLongestAskedPause));
   connect_at_ = Clock::now() + pause;
   std::string trouble = farm::connection_trouble(reason, worker_.options.coordinator);

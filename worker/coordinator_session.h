@@ -22,11 +22,14 @@ class CoordinatorSession : private CoordinatorLink::Owner {
  public:
   /// `new_token` is told of a token that comes in place of the first.
   CoordinatorSession(const WorkerContext& worker, WorkerId id,
-                     std::shared_ptr<grpc::Channel> channel, WorkerToken token,
+                     const std::shared_ptr<grpc::Channel>& channel, WorkerToken token,
                      std::function<void(const std::string&)> new_token);
 
   /// Opens a stream where it is time for one: the first when the rendering child is `ready`.
   void tick(TimePoint now, bool ready);
+
+  /// Ends the stream that is open; another one begins as after any that ends.
+  void break_off(const std::string& reason);
 
   /// Queued on the stream that is open.
   void send(v1::WorkerMessage message) { link_.send(std::move(message)); }
@@ -41,6 +44,7 @@ class CoordinatorSession : private CoordinatorLink::Owner {
  private:
   void connect(TimePoint now);
   void stream_says(v1::CoordinatorMessage message) override;
+  void hear(v1::CoordinatorMessage message);
   void stream_ended(StreamEnd end, const std::string& reason,
                     std::chrono::milliseconds retry_after) override;
   bool welcomed(const v1::Welcome& welcome);
@@ -58,6 +62,8 @@ class CoordinatorSession : private CoordinatorLink::Owner {
   const std::function<void(const std::string&)> new_token_;
   farm::Backoff backoff_{farm::kFirstReconnect, farm::kLongestReconnect};
   bool streaming_ = false;
+  bool broken_off_ = false;            ///< what still comes on this stream is not heard
+  std::optional<TimePoint> welcomed_;  ///< when, on this stream
   bool ever_connected_ = false;
   bool ever_welcomed_ = false;
   bool finished_ = false;

@@ -100,6 +100,10 @@ void RendererProcess::kill_child() {
 
 void RendererProcess::kill(const std::string& reason) {
   const core::MutexLock lock(mutex_);
+  kill_locked(reason);
+}
+
+void RendererProcess::kill_locked(const std::string& reason) {
   if (reaped_) return;
   killed_ = reason;
   ::kill(pid_, SIGKILL);
@@ -107,6 +111,12 @@ void RendererProcess::kill(const std::string& reason) {
 
 void RendererProcess::send(pipe::ToRenderer message) {
   const core::MutexLock lock(mutex_);
+  if (!killed_.empty()) return;  // nobody will read it
+  outgoing_bytes_ += message.ByteSizeLong();
+  if (outgoing_bytes_ > kMostUnread) {
+    kill_locked("did not read what it was told and was killed");
+    return;
+  }
   outgoing_.push_back(std::move(message));
   wake_.notify_all();  // the reader may wait, too
 }
@@ -173,6 +183,7 @@ void RendererProcess::write_loop() {
       if (closing_) return;
       message = std::move(outgoing_.front());
       outgoing_.pop_front();
+      outgoing_bytes_ -= message.ByteSizeLong();
     }
     if (!pipe_.send(message)) return;  // the reader notices why
   }

@@ -59,14 +59,19 @@ class RendererProcess {
   /// Ends the child; the owner hears of it when it is dead, with this reason.
   void kill(const std::string& reason) HYADES_EXCLUDES(mutex_);
 
-  /// Queues a message; never blocks.
+  /// Queues a message; never blocks. A child for which more than kMostUnread waits is killed: it
+  /// does not read, and would have this process keep whatever it is told.
   void send(pipe::ToRenderer message) HYADES_EXCLUDES(mutex_);
+
+  /// Bytes; more than what of all jobs may be told at once (StateMachineOptions::max_brief_bytes).
+  static constexpr size_t kMostUnread = size_t{256} << 20U;
 
  private:
   RendererProcess(pid_t pid, int fd, Owner& owner);
   void read_loop() HYADES_EXCLUDES(mutex_);
   void write_loop() HYADES_EXCLUDES(mutex_);
   void kill_child() HYADES_EXCLUDES(mutex_);
+  void kill_locked(const std::string& reason) HYADES_REQUIRES(mutex_);
   void wait_for_owner(size_t bytes) HYADES_EXCLUDES(mutex_);
 
   Owner& owner_;
@@ -78,6 +83,7 @@ class RendererProcess {
   bool reaped_ HYADES_GUARDED_BY(mutex_) = false;
   std::string killed_ HYADES_GUARDED_BY(mutex_);  ///< why, where this process did it
   std::deque<pipe::ToRenderer> outgoing_ HYADES_GUARDED_BY(mutex_);
+  size_t outgoing_bytes_ HYADES_GUARDED_BY(mutex_) = 0;
   /// Bytes of the messages that the owner has before it.
   std::deque<size_t> unheard_ HYADES_GUARDED_BY(mutex_);
   size_t unheard_bytes_ HYADES_GUARDED_BY(mutex_) = 0;

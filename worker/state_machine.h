@@ -30,6 +30,9 @@ class WorkerPorts {
 
   /// To the coordinator, on the stream that is open.
   virtual void send(v1::WorkerMessage message) = 0;
+  /// The stream that is open shall end: the coordinator says what none should. For the machine it
+  /// is closed already.
+  virtual void break_off(const std::string& reason) = 0;
   /// To the rendering child; lost if there is none.
   virtual void tell_renderer(pipe::ToRenderer message) = 0;
   /// It hangs. `reason` completes "the process that renders ...". When it is dead
@@ -68,6 +71,10 @@ struct StateMachineOptions {
   std::vector<std::string> tags;
   /// Films that may wait for their acknowledgement before no more work is asked for.
   uint64_t max_kept_bytes = uint64_t{1} << 30U;
+  size_t max_kept = 10'000;  ///< the same in numbers
+  /// Of jobs that the coordinator told of, each with kBriefBytes more. As much as all open jobs of
+  /// a farm may have (docs/wire.md): no coordinator that means well comes to that.
+  uint64_t max_brief_bytes = uint64_t{128} << 20U;
   Duration hang_limit{0};  ///< see UnitClock
   Duration unit_limit{0};  ///< see UnitClock
 };
@@ -84,6 +91,9 @@ struct StateMachineOptions {
 /// child that hangs is killed, and then only the units that it hung in are suspects. A unit that
 /// takes longer than it may has failed, whoever is to blame. A child whose answer fits none of its
 /// units is killed, and they are suspects as when it dies.
+///
+/// A coordinator gets no more memory than one that means well needs: it welcomes once, leases no
+/// more units than it was asked for, and tells of no more jobs than fit; else its stream is ended.
 class StateMachine {
  public:
   StateMachine(StateMachineOptions options, WorkerPorts& ports)
@@ -113,7 +123,7 @@ class StateMachine {
   /// The units that wait for them go back; `final` where no other worker can have more luck, and
   /// then they have failed. Otherwise no more work is asked for during a rest, which grows with
   /// each failure until the files of a job are there again.
-  void files_failed(uint64_t job, const std::string& reason, bool final, TimePoint now);
+  void files_failed(uint64_t job, const std::string& why, bool final, TimePoint now);
 
   /// What heartbeats tell of the cache from now on.
   void cache_is(const CacheFacts& cache) { cache_ = cache; }
@@ -150,7 +160,8 @@ class StateMachine {
     std::optional<TimePoint> send_again;
   };
   struct Job {
-    v1::JobSpec spec;
+    std::string spec;      ///< a v1::JobSpec as it travels, which takes a fraction of the memory
+    bool briefed = false;  ///< on the stream that is open
     bool has_files = false;
     bool fetching = false;
     bool told = false;  ///< the child knows it
@@ -160,6 +171,7 @@ class StateMachine {
   /// A Backoff waits for at least half of these.
   static constexpr std::chrono::seconds kFirstRest{10};
   static constexpr std::chrono::seconds kLongestRest{120};
+  static constexpr uint64_t kBriefBytes = uint64_t{6} << 10U;
 
   // state_machine.cpp: the units in hand.
   static farm::LogFields about(const v1::LeasedUnit& leased);
@@ -170,9 +182,11 @@ class StateMachine {
   void stop_rendering(Items::iterator item);
 
   // state_machine_stream.cpp: what the coordinator says and is asked for.
+  void break_off(const std::string& reason);
   void send_hello();
   void welcomed(const v1::Welcome& welcome, TimePoint now);
-  void add_job(v1::JobBrief brief);
+  void add_job(const v1::JobBrief& brief);
+  void forget_former_jobs();
   void job_over(uint64_t job);
   void take(const v1::Lease& lease);
   void take_unit(const v1::LeasedUnit& leased, bool adopted);
@@ -199,6 +213,8 @@ class StateMachine {
 
   // state_machine_files.cpp: the files of jobs.
   void recheck_files(uint64_t job, const pipe::UnitFailed& failed);
+  static v1::JobSpec spec_of(const Job& job);
+  static uint64_t bytes_of(const Job& job) { return job.spec.size() + kBriefBytes; }
   void forget_idle_job(uint64_t job);
 
   // state_machine_time.cpp: because time has passed.
@@ -215,6 +231,7 @@ class StateMachine {
   WorkerPorts& ports_;
   Items items_;  ///< by token
   std::map<uint64_t, Job> jobs_;
+  uint64_t brief_bytes_ = 0;  ///< of these
   uint64_t next_token_ = 1;
   size_t kept_ = 0;  ///< items with a film
   uint64_t kept_bytes_ = 0;
@@ -233,7 +250,8 @@ class StateMachine {
 
   bool open_ = false;
   bool welcomed_ = false;
-  uint32_t wished_ = 0;  ///< units asked for on this stream that have not come
+  uint64_t wished_ = 0;         ///< units asked for on this stream that have not come
+  uint64_t to_be_adopted_ = 0;  ///< units that Hello told of and that no lease has named
   Duration heartbeat_every_{std::chrono::seconds(5)};
   Duration lease_time_{std::chrono::seconds(30)};
   uint64_t max_message_bytes_ = uint64_t{64} << 20U;

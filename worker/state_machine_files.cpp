@@ -30,7 +30,8 @@ void StateMachine::files_are_there(uint64_t id) {
   dispatch();
 }
 
-void StateMachine::files_failed(uint64_t id, const std::string& reason, bool final, TimePoint now) {
+void StateMachine::files_failed(uint64_t id, const std::string& why, bool final, TimePoint now) {
+  const std::string reason = farm::wire_text(why);
   const auto job = jobs_.find(id);
   if (job == jobs_.end()) return;
   job->second.fetching = false;
@@ -66,12 +67,19 @@ void StateMachine::recheck_files(uint64_t id, const pipe::UnitFailed& failed) {
   const auto job = jobs_.find(id);
   if (job == jobs_.end() || failed.damaged().empty()) return;
   const std::set<std::string> damaged(failed.damaged().begin(), failed.damaged().end());
-  for (const v1::JobFile& file : job->second.spec.files()) {
+  const v1::JobSpec spec = spec_of(job->second);
+  for (const v1::JobFile& file : spec.files()) {
     const std::string name = farm::hex_from_wire(file.sha256());
     if (!damaged.contains(name)) continue;
     ports_.recheck(name);
     job->second.has_files = false;  // fetched, which looks at it, before the next unit
   }
+}
+
+v1::JobSpec StateMachine::spec_of(const Job& job) {
+  v1::JobSpec spec;
+  spec.ParseFromString(job.spec);
+  return spec;
 }
 
 /// Lets go of a job of which nothing is left to be rendered.
@@ -89,6 +97,7 @@ void StateMachine::forget_idle_job(uint64_t id) {
     message.mutable_forget()->set_job(id);
     ports_.tell_renderer(std::move(message));
   }
+  brief_bytes_ -= bytes_of(job->second);
   jobs_.erase(job);
 }
 

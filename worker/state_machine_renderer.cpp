@@ -193,7 +193,7 @@ void StateMachine::tell_child(uint64_t token, Item& item) {
   if (!job.told) {
     pipe::ToRenderer message;
     message.mutable_job()->set_job(item.leased.job());
-    *message.mutable_job()->mutable_spec() = job.spec;
+    *message.mutable_job()->mutable_spec() = spec_of(job);
     ports_.tell_renderer(std::move(message));
     job.told = true;
   }

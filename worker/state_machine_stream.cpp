@@ -15,6 +15,8 @@ namespace {
 constexpr Duration kShortestHeartbeat = std::chrono::milliseconds(100);
 constexpr Duration kShortestLease = std::chrono::seconds(1);
 constexpr Duration kResendAfter = std::chrono::milliseconds(200);
+/// Bytes of a unit's proof, which are 16.
+constexpr size_t kLongestProof = 1000;
 
 Duration in_milliseconds(uint64_t count) { return std::chrono::milliseconds(count); }
 
@@ -25,8 +27,10 @@ void StateMachine::stream_opened(TimePoint now) {
   open_ = true;
   welcomed_ = false;
   wished_ = 0;
+  to_be_adopted_ = 0;
   hello_sent_ = now;
   unanswered_.clear();
+  for (auto& [id, job] : jobs_) job.briefed = false;
   if (!worker_class_.empty()) send_hello();
 }
 
@@ -34,6 +38,12 @@ void StateMachine::stream_closed() {
   open_ = false;
   welcomed_ = false;
   wished_ = 0;
+}
+
+/// The coordinator does what none should, and would cost this machine more and more.
+void StateMachine::break_off(const std::string& reason) {
+  stream_closed();
+  ports_.break_off("the coordinator " + reason);
 }
 
 void StateMachine::send_hello() {
@@ -51,18 +61,20 @@ void StateMachine::send_hello() {
   hello.set_memory_bytes(options_.memory_bytes);
   for (const std::string& tag : options_.tags) hello.add_tags(tag);
   for (const auto& [token, item] : items_) *hello.add_in_hand() = item.leased;
+  to_be_adopted_ = items_.size();
   hello.set_want(take_wish());
   ports_.send(std::move(message));
 }
 
 void StateMachine::coordinator_says(v1::CoordinatorMessage message, TimePoint now) {
   fence(now);
+  if (!open_) return;
   switch (message.message_case()) {
     case v1::CoordinatorMessage::kWelcome:
       welcomed(message.welcome(), now);
       break;
     case v1::CoordinatorMessage::kJob:
-      add_job(std::move(*message.mutable_job()));
+      add_job(message.job());
       break;
     case v1::CoordinatorMessage::kLease:
       if (!renewed_) renewed_ = now;  // units were given up, and here are others
@@ -78,7 +90,7 @@ void StateMachine::coordinator_says(v1::CoordinatorMessage message, TimePoint no
       unwanted(message.stop().unit());
       break;
     case v1::CoordinatorMessage::kDrain:
-      drained(message.drain().reason());
+      drained(farm::wire_text(message.drain().reason()));
       break;
     case v1::CoordinatorMessage::kOver:
       job_over(message.over().job());
@@ -94,6 +106,8 @@ void StateMachine::coordinator_says(v1::CoordinatorMessage message, TimePoint no
 }
 
 void StateMachine::welcomed(const v1::Welcome& welcome, TimePoint now) {
+  // Each would send all films again, and tell people.
+  if (welcomed_) return break_off("welcomed this worker twice");
   heartbeat_every_ = std::max(in_milliseconds(welcome.heartbeat_ms()), kShortestHeartbeat);
   lease_time_ = std::max(in_milliseconds(welcome.lease_ms()), kShortestLease);
   if (welcome.max_message_bytes() > 0) max_message_bytes_ = welcome.max_message_bytes();
@@ -107,10 +121,28 @@ void StateMachine::welcomed(const v1::Welcome& welcome, TimePoint now) {
   if (leaving_) say_leaving();
 }
 
-void StateMachine::add_job(v1::JobBrief brief) {
-  Job& job = jobs_[brief.job()];
-  job.spec = std::move(*brief.mutable_spec());
+void StateMachine::add_job(const v1::JobBrief& brief) {
+  const auto [there, added] = jobs_.try_emplace(brief.job());
+  Job& job = there->second;
+  if (!added) brief_bytes_ -= bytes_of(job);
+  brief.spec().SerializeToString(&job.spec);
+  brief_bytes_ += bytes_of(job);
+  job.briefed = true;
   job.over = false;
+  if (brief_bytes_ > options_.max_brief_bytes) forget_former_jobs();
+  if (brief_bytes_ > options_.max_brief_bytes) {
+    break_off("told of more jobs than all that a farm has");
+  }
+}
+
+/// Those that ended while there was no stream: nobody tells of them again.
+void StateMachine::forget_former_jobs() {
+  for (auto it = jobs_.begin(); it != jobs_.end();) {
+    const auto job = it++;
+    if (job->second.briefed) continue;
+    job->second.over = true;
+    forget_idle_job(job->first);
+  }
 }
 
 void StateMachine::job_over(uint64_t id) {
@@ -127,9 +159,12 @@ void StateMachine::job_over(uint64_t id) {
 }
 
 void StateMachine::take(const v1::Lease& lease) {
-  const auto units = static_cast<uint32_t>(lease.units_size());
-  if (!lease.adopted()) wished_ -= std::min(wished_, units);
+  const auto units = static_cast<uint64_t>(lease.units_size());
+  uint64_t& expected = lease.adopted() ? to_be_adopted_ : wished_;
+  if (units > expected) return break_off("leases units that nobody asked for");
+  expected -= units;
   for (const v1::Unit& unit : lease.units()) {
+    if (unit.proof().size() > kLongestProof) return break_off("sent a proof that is none");
     v1::LeasedUnit leased;
     *leased.mutable_lease() = lease.lease();
     leased.set_job(lease.job());
@@ -168,7 +203,7 @@ void StateMachine::take_unit(const v1::LeasedUnit& leased, bool adopted) {
   if (!job->second.has_files && !job->second.fetching) {
     job->second.fetching = true;
     ports_.note(farm::LogLevel::debug, "fetches its files", {leased.job(), {}, {}, {}});
-    ports_.fetch(leased.job(), job->second.spec);
+    ports_.fetch(leased.job(), spec_of(job->second));
   }
 }
 
@@ -196,8 +231,8 @@ void StateMachine::rejected(const v1::Rejected& message, TimePoint now) {
   }
   ports_.note(
       farm::LogLevel::warning,
-      "a film was refused: " +
-          (message.text().empty() ? v1::Rejected::Reason_Name(message.reason()) : message.text()),
+      "a film was refused: " + (message.text().empty() ? v1::Rejected::Reason_Name(message.reason())
+                                                       : farm::wire_text(message.text())),
       about(message.unit()));
   stop_rendering(item);
   drop(item);
@@ -213,7 +248,8 @@ void StateMachine::send_result(const Item& item) {
 
 /// How many units more to ask for now; they are counted as asked for.
 uint32_t StateMachine::take_wish() {
-  if (leaving_ || rests_until_ || kept_bytes_ > options_.max_kept_bytes) return 0;
+  if (leaving_ || rests_until_) return 0;
+  if (kept_bytes_ > options_.max_kept_bytes || kept_ > options_.max_kept) return 0;
   const size_t in_work = items_.size() - kept_ + wished_;
   const size_t enough = size_t{options_.threads} + options_.ahead;
   const auto wish = static_cast<uint32_t>(enough - std::min(enough, in_work));

@@ -11,6 +11,12 @@
 #include "worker/state_machine.h"
 
 namespace hyades::worker {
+namespace {
+
+/// Heartbeats; older ones renew nothing any more.
+constexpr size_t kMostUnanswered = 10'000;
+
+}  // namespace
 
 void StateMachine::tick(TimePoint now, bool flowing) {
   fence(now);
@@ -56,6 +62,7 @@ void StateMachine::heartbeat(TimePoint now) {
   v1::Heartbeat& beat = *message.mutable_heartbeat();
   beat.set_number(++heartbeats_);
   unanswered_.emplace(heartbeats_, now);
+  if (unanswered_.size() > kMostUnanswered) unanswered_.erase(unanswered_.begin());
   std::map<std::pair<uint64_t, uint64_t>, v1::LeaseProgress> leases;
   for (const auto& [token, item] : items_) {
     const v1::LeaseId& lease = item.leased.lease();

@@ -92,6 +92,7 @@ class Worker : private WorkerPorts {
   WorkerContext context() { return {options_, loop_, log_, machine_}; }
 
   void send(v1::WorkerMessage message) override { session_.send(std::move(message)); }
+  void break_off(const std::string& reason) override { session_.break_off(reason); }
   void tell_renderer(pipe::ToRenderer message) override { renderer_.tell(std::move(message)); }
   void kill_renderer(const std::string& reason) override { renderer_.kill(reason); }
   void fetch(uint64_t job, const v1::JobSpec& spec) override { fetcher_.fetch(job, spec); }

@@ -15,10 +15,10 @@
 #include "coordinator/access/caller.h"
 #include "coordinator/controller/owner_connections.h"
 #include "coordinator/operations/ownership.h"
-#include "coordinator/services/part_count.h"
 #include "coordinator/services/request_call.h"
 #include "core/base/mutex.h"
 #include "farm/byte_budget.h"
+#include "farm/part_count.h"
 
 namespace hyades::coordinator {
 namespace {
@@ -26,8 +26,6 @@ namespace {
 using grpc::internal::CallbackBidiHandler;
 using grpc::internal::CallbackClientStreamingHandler;
 
-/// Messages in one request; a job with as many files as it may have has about half of that.
-constexpr uint64_t kMostContributors = 200'000;
 /// What a call takes besides the message that waits for its reader [bytes].
 constexpr uint64_t kCallBytes = uint64_t{16} << 10U;
 
@@ -108,9 +106,9 @@ class Service::UnaryCall final : public RequestCall {
       alone = take_large_request();
       if (!alone) return another_is_large();
       const auto& type = *operation_.handle.request().GetDescriptor();
-      if (!has_few_parts(asked_, type, kMostContributors)) {
+      if (!farm::has_few_parts(asked_, type, farm::kMostParts)) {
         return {grpc::StatusCode::INVALID_ARGUMENT,
-                fmt::format("more than {} parts in one request, or no {}", kMostContributors,
+                fmt::format("more than {} parts in one request, or no {}", farm::kMostParts,
                             type.name())};
       }
     }

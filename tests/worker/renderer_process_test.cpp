@@ -161,5 +161,18 @@ TEST(RendererProcess, OneThatTalksWithoutEndIsReadOnlyAsItIsHeard) {
   // And it can be ended while its reader waits.
 }
 
+TEST(RendererProcess, OneThatDoesNotReadIsKilledBeforeTooMuchWaitsForIt) {
+  Script script("exec sleep 60", "");
+  Ears ears;
+  const auto process = script.start(ears);
+  pipe::ToRenderer large;
+  large.mutable_job()->mutable_spec()->set_document(std::string(size_t{16} << 20U, 'd'));
+  for (size_t sent = 0; sent <= RendererProcess::kMostUnread; sent += size_t{16} << 20U) {
+    process->send(large);
+  }
+  process->send(large);  // beyond what the pipe took
+  EXPECT_EQ(ears.wait_for_end(), "did not read what it was told and was killed");
+}
+
 }  // namespace
 }  // namespace hyades::worker

@@ -59,8 +59,7 @@ TEST(StateMachine, AFilmThatIsMoreThanItsUnitEndsTheChildAndBlamesWhatItHadBegun
 
 TEST(StateMachine, UnitsThatNobodyGaveTheChildTakeNoTime) {
   WorkerWorld world;
-  world.begin();
-  world.welcome(1000, 10'000'000);
+  world.begin(1000, 10'000'000);
   for (uint64_t token = 1000; token < 1100; ++token) world.started(token, true);
   for (int minute = 0; minute < 40; ++minute) {
     world.now += std::chrono::minutes(1);
@@ -83,7 +82,7 @@ TEST(StateMachine, OneUnitInWorkNeedsNoSecondTrial) {
 
 TEST(StateMachine, AHungUnitFailsAndThoseBesideItAreNotToBlame) {
   WorkerWorld world(3, 1);
-  world.begin();
+  world.begin(1000, 1'000'000);
   for (const int x : {0, 8, 16}) world.lease(WorkerWorld::unit(x, static_cast<uint64_t>(x) + 1));
   world.machine->files_are_there(WorkerWorld::kJob);
   for (const int x : {0, 8}) world.started(world.token_of(x));
@@ -97,7 +96,6 @@ TEST(StateMachine, AHungUnitFailsAndThoseBesideItAreNotToBlame) {
       world.echo(1);
     }
   };
-  world.welcome(1000, 1'000'000);
   pass(60);
   EXPECT_TRUE(world.ports.kills.empty());
   pass(2);
@@ -117,8 +115,7 @@ TEST(StateMachine, AHungUnitFailsAndThoseBesideItAreNotToBlame) {
 
 TEST(StateMachine, AUnitThatHasHadItsTimeFailsAndTheOthersGoOn) {
   WorkerWorld world(2, 1);
-  world.begin();
-  world.welcome(1000, 10'000'000);
+  world.begin(1000, 10'000'000);
   for (const int x : {0, 8, 16}) world.lease(WorkerWorld::unit(x, static_cast<uint64_t>(x) + 1));
   world.machine->files_are_there(WorkerWorld::kJob);
   world.started(world.token_of(0), true);  // the time for its scene counts
@@ -151,8 +148,7 @@ TEST(StateMachine, AUnitThatHasHadItsTimeFailsAndTheOthersGoOn) {
 
 TEST(StateMachine, AChildThatDoesNotStopAnOverdueUnitIsKilled) {
   WorkerWorld world(2, 1);
-  world.begin();
-  world.welcome(1000, 10'000'000);
+  world.begin(1000, 10'000'000);
   for (const int x : {0, 8}) world.lease(WorkerWorld::unit(x, static_cast<uint64_t>(x) + 1));
   world.machine->files_are_there(WorkerWorld::kJob);
   const auto pass = [&](int time) {
@@ -181,8 +177,7 @@ TEST(StateMachine, AChildThatDoesNotStopAnOverdueUnitIsKilled) {
 
 TEST(StateMachine, ASceneThatLoadsForLongerThanAUnitMayTakeEndsItsProcess) {
   WorkerWorld world(2, 1);
-  world.begin();
-  world.welcome(1000, 10'000'000);
+  world.begin(1000, 10'000'000);
   world.lease(WorkerWorld::unit(0, 1));
   world.machine->files_are_there(WorkerWorld::kJob);
   world.started(world.token_of(0), true);

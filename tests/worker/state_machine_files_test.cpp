@@ -82,7 +82,7 @@ TEST(StateMachine, UnitsWhoseFilesCannotBeHadGoBack) {
 
 TEST(StateMachine, RestsLongerEachTimeThatFilesCannotBeHad) {
   WorkerWorld world;
-  world.begin();
+  world.begin(1000, 10'000'000);
   const auto fail = [&] {  // how long it asks for nothing
     world.lease(WorkerWorld::unit(0));
     world.machine->files_failed(WorkerWorld::kJob, "the disk is full", false, world.now);
@@ -92,7 +92,6 @@ TEST(StateMachine, RestsLongerEachTimeThatFilesCannotBeHad) {
       world.machine->tick(world.now, true);
       if (first(world.take_sent(), &Message::has_request).has_request()) return rest;
       world.now += milliseconds(100);
-      world.welcome();
     }
   };
   const auto rest = fail();

@@ -14,6 +14,7 @@ namespace hyades::worker {
 class FakePorts : public WorkerPorts {
  public:
   void send(v1::WorkerMessage message) override { sent.push_back(std::move(message)); }
+  void break_off(const std::string& reason) override { broken_off.push_back(reason); }
   void tell_renderer(pipe::ToRenderer message) override { told.push_back(std::move(message)); }
   void kill_renderer(const std::string& reason) override { kills.push_back(reason); }
   void fetch(uint64_t job, const v1::JobSpec& /*spec*/) override { fetched.push_back(job); }
@@ -27,6 +28,7 @@ class FakePorts : public WorkerPorts {
 
   std::vector<v1::WorkerMessage> sent;
   std::vector<pipe::ToRenderer> told;
+  std::vector<std::string> broken_off;  ///< streams: why
   std::vector<std::string> kills;
   std::vector<uint64_t> fetched;
   std::vector<uint64_t> released;
@@ -46,6 +48,7 @@ class WorkerWorld {
     options.threads = threads;
     options.ahead = ahead;
     options.max_kept_bytes = 1000;
+    options.max_brief_bytes = uint64_t{1} << 20U;
     options.hang_limit = std::chrono::seconds(60);
     options.unit_limit = std::chrono::minutes(30);
     machine.emplace(options, ports);
@@ -63,8 +66,10 @@ class WorkerWorld {
     machine->coordinator_says(message, now);
   }
   /// `digests`: of the files that it names, 32 bytes each.
-  void job(uint64_t id = kJob, const std::vector<std::string>& digests = {}) {
+  void job(uint64_t id = kJob, const std::vector<std::string>& digests = {},
+           const std::string& name = {}) {
     v1::CoordinatorMessage message;
+    message.mutable_job()->mutable_spec()->set_name(name);
     message.mutable_job()->set_job(id);
     message.mutable_job()->mutable_spec()->set_document("job.yaml");
     for (const std::string& digest : digests) {
@@ -73,10 +78,10 @@ class WorkerWorld {
     machine->coordinator_says(message, now);
   }
   /// Everything up to where units can come.
-  void begin() {
+  void begin(uint32_t heartbeat_ms = 1000, uint32_t lease_ms = 10'000) {
     renderer_up();
     machine->stream_opened(now);
-    welcome();
+    welcome(heartbeat_ms, lease_ms);
     job();
   }
 

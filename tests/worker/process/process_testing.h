@@ -39,6 +39,7 @@ class WorkerProcess {
   /// The exit status, within `limit`; nothing where it runs on, -N where signal N ended it.
   std::optional<int> wait(std::chrono::seconds limit);
 
+  pid_t pid() const { return pid_; }
   /// The process that renders; 0 where there is none.
   pid_t renderer() const;
   std::string log() const { return read_file(log_); }

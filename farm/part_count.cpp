@@ -1,10 +1,10 @@
-#include "coordinator/services/part_count.h"
+#include "farm/part_count.h"
 
 #include <google/protobuf/io/coded_stream.h>
 #include <google/protobuf/wire_format_lite.h>
 #include <grpcpp/support/proto_buffer_reader.h>
 
-namespace hyades::coordinator {
+namespace hyades::farm {
 namespace {
 
 using google::protobuf::Descriptor;
@@ -47,4 +47,4 @@ bool has_few_parts(const grpc::ByteBuffer& bytes, const Descriptor& type, uint64
   return count(in, type, most, 0);
 }
 
-}  // namespace hyades::coordinator
+}  // namespace hyades::farm
