@@ -1,4 +1,5 @@
 // `hyades worker`: works for a coordinator.
+#include <sys/resource.h>
 #include <unistd.h>
 
 #include <atomic>
@@ -113,6 +114,15 @@ WorkerOptions default_options() {
   return options;
 }
 
+/// Each file of the jobs in work is an open one; the usual limit is a thousand, and the hard one is
+/// higher.
+void open_many_files() {
+  rlimit files{};
+  if (::getrlimit(RLIMIT_NOFILE, &files) != 0) return;
+  files.rlim_cur = files.rlim_max;
+  (void)::setrlimit(RLIMIT_NOFILE, &files);
+}
+
 void add_resources(CLI::App& app, WorkerOptions& options) {
   app.add_option("--threads", options.threads, "units rendered at once")
       ->check(hyades::cli::in_range(1, 4096))
@@ -125,6 +135,10 @@ void add_resources(CLI::App& app, WorkerOptions& options) {
   app.add_option("--cache", options.cache, "folder for the files of jobs; workers may share it")
       ->capture_default_str();
   app.add_option("--cache-size", options.cache_size, "most bytes in it (default: 16G)")
+      ->transform(CLI::AsSizeValue(false));
+  app.add_option("--texture-disk", options.texture_disk,
+                 "most bytes of textures that memory does not hold, in a file in TMPDIR or the "
+                 "cache (default: four times --memory); never more than half of what is free there")
       ->transform(CLI::AsSizeValue(false));
   app.add_option("--name", options.name, "what people call it (default: this host's name)");
   app.add_option("--tags", options.tags, "what jobs may ask for: a,b")
@@ -205,6 +219,7 @@ int main(int argc, char** argv) {
     return *status;
   }
   hyades::farm::set_log("hyades worker", log);
+  open_many_files();
   options.cloud = chosen_cloud(preemption);
   struct sigaction action {};
   action.sa_handler = on_signal;

@@ -4,6 +4,7 @@
 #include <fcntl.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <csignal>
 #include <cstdint>
 #include <cstdio>
@@ -43,6 +44,9 @@ constexpr uint32_t kMostSaid = farm::kMaxMessageBytes + (uint32_t{64} << 10U);
 /// What libraries take besides scenes, and what each thread's stack may.
 constexpr uint64_t kOverhead = uint64_t{256} << 20U;
 constexpr uint64_t kThreadOverhead = uint64_t{8} << 20U;
+/// Bytes up to which the worker's log, where that is a file, takes lines of this process in any
+/// case.
+constexpr uint64_t kLogBytes = uint64_t{64} << 20U;
 
 int refuse(pipe::MessagePipe& parent, const std::string& reason) {
   pipe::FromRenderer message;
@@ -71,9 +75,11 @@ int main(int argc, char** argv) {
   CLI::App app("Renders for a worker, which starts it.", "hyades-worker-render");
   int threads = 1;
   uint64_t memory = 0;
+  uint64_t texture_disk = 0;
   std::string cache;
   app.add_option("--threads", threads)->check(hyades::cli::in_range(1, 4096));
   app.add_option("--memory", memory);
+  app.add_option("--texture-disk", texture_disk);
   std::string sandbox = "auto";
   app.add_option("--cache", cache)->required();
   app.add_option("--sandbox", sandbox);
@@ -95,6 +101,9 @@ int main(int argc, char** argv) {
   const core::Status limited =
       core::limit_memory(memory == 0 ? 0 : memory + kOverhead + all_threads * kThreadOverhead);
   if (!limited) return refuse(parent, limited.error().message);
+  texture_disk = std::min(texture_disk, core::TexelStore::half_of_free(texels));
+  const core::Status bounded = core::limit_file_size(std::max(texture_disk, kLogBytes));
+  if (!bounded) return refuse(parent, bounded.error().message);
 
   const auto measured = core::this_class();
   if (!measured) return refuse(parent, measured.error().message);
@@ -109,7 +118,7 @@ int main(int argc, char** argv) {
   if (!goes_first) ready.mutable_ready()->set_not_first(goes_first.error().message);
   if (!parent.send(ready)) return 1;
 
-  worker::SceneShelf shelf(**store, memory, std::move(texels));
+  worker::SceneShelf shelf(**store, memory, {std::move(texels), texture_disk});
   worker::RenderServer server(parent, shelf, threads);
   server.run();
   ::_exit(0);  // threads may be in the midst of units that nobody waits for

@@ -1,6 +1,9 @@
 #include "worker/asset_fetcher.h"
 
+#include <sys/resource.h>
+
 #include <algorithm>
+#include <cstdint>
 #include <span>
 #include <utility>
 
@@ -29,6 +32,13 @@ constexpr milliseconds kLocalPatience{5000};
 /// A download slower than this many bytes per millisecond is broken off and resumed.
 constexpr uint64_t kSlowest = 16;
 constexpr milliseconds kShortestDeadline{60'000};
+
+/// Half of the files that this process may have open.
+size_t most_pins() {
+  rlimit files{};
+  if (::getrlimit(RLIMIT_NOFILE, &files) != 0) return 500;
+  return files.rlim_cur == RLIM_INFINITY ? SIZE_MAX : files.rlim_cur / 2;
+}
 
 std::string name_of(const v1::JobFile& file) { return farm::hex_from_wire(file.sha256()); }
 
@@ -69,6 +79,7 @@ AssetFetcher::AssetFetcher(std::shared_ptr<grpc::Channel> channel, std::string t
       store_(store),
       owner_(owner),
       patience_(patience),
+      most_pins_(most_pins()),
       token_(std::move(token)),
       cache_bytes_(store.used()) {
   for (int i = 0; i < kThreads; ++i) threads_.emplace_back([this] { loop(); });
@@ -93,7 +104,7 @@ AssetFetcher::~AssetFetcher() {
 
 void AssetFetcher::fetch(uint64_t job, const v1::JobSpec& spec) {
   const core::MutexLock lock(mutex_);
-  wanted_.push_back(std::make_shared<Wanted>(Wanted{job, spec}));
+  wanted_.push_back(std::make_shared<Wanted>(Wanted{job, spec.SerializeAsString()}));
   wake_.notify_all();  // of those who wait not all wait for this
 }
 
@@ -122,6 +133,7 @@ void AssetFetcher::release(uint64_t job) {
   }
   if (const auto pins = pins_.find(job); pins != pins_.end()) {
     released = std::move(pins->second);
+    pinned_ -= released.size();
     pins_.erase(pins);
   }
 }
@@ -154,8 +166,36 @@ void AssetFetcher::loop() {
 }
 
 AssetFetcher::Outcome AssetFetcher::fetch_all(Wanted& wanted) {
+  v1::JobSpec spec;
+  spec.ParseFromString(wanted.spec);
+  const auto files = static_cast<size_t>(spec.files_size());
+  {
+    const core::MutexLock lock(mutex_);
+    if (pinned_ + files > most_pins_) {
+      return Failure{
+          fmt::format("the job has {} files; this worker can keep {} at once, of which "
+                      "{} are in use (ulimit -n)",
+                      files, most_pins_, pinned_)};
+    }
+    pinned_ += files;
+  }
   std::vector<farm::ContentPin> pins;
-  for (const v1::JobFile& file : wanted.spec.files()) {
+  Outcome failed = fetch_each(wanted, spec, pins);
+  const core::MutexLock lock(mutex_);
+  if (!failed && unwanted(wanted)) failed = Failure{"no longer wanted"};
+  if (failed) {
+    pinned_ -= files;  // the pins go
+    return failed;
+  }
+  auto& kept = pins_[wanted.job];
+  pinned_ -= kept.size();
+  kept = std::move(pins);
+  return std::nullopt;
+}
+
+AssetFetcher::Outcome AssetFetcher::fetch_each(Wanted& wanted, const v1::JobSpec& spec,
+                                               std::vector<farm::ContentPin>& pins) {
+  for (const v1::JobFile& file : spec.files()) {
     if (file.sha256().size() != sizeof(core::Sha256)) {
       return Failure{file.path() + ": its name is no SHA-256", true};
     }
@@ -171,9 +211,6 @@ AssetFetcher::Outcome AssetFetcher::fetch_all(Wanted& wanted) {
       if (attempt == 2) return Failure{pin.error().in(file.path()).message};
     }
   }
-  const core::MutexLock lock(mutex_);
-  if (unwanted(wanted)) return Failure{"no longer wanted"};  // the pins go
-  pins_[wanted.job] = std::move(pins);
   return std::nullopt;
 }
 

@@ -2,6 +2,7 @@
 
 #include <atomic>
 #include <chrono>
+#include <cstddef>
 #include <cstdint>
 #include <deque>
 #include <map>
@@ -69,7 +70,7 @@ class AssetFetcher {
   /// The files of a job.
   struct Wanted {
     uint64_t job = 0;
-    v1::JobSpec spec;
+    std::string spec;                     ///< a v1::JobSpec as it travels: few are read at once
     bool dropped = false;                 ///< with the lock: it was released meanwhile
     grpc::ClientContext* call = nullptr;  ///< with the lock: the download in progress
   };
@@ -86,6 +87,8 @@ class AssetFetcher {
 
   void loop() HYADES_EXCLUDES(mutex_);
   Outcome fetch_all(Wanted& wanted) HYADES_EXCLUDES(mutex_);
+  Outcome fetch_each(Wanted& wanted, const v1::JobSpec& spec, std::vector<farm::ContentPin>& pins)
+      HYADES_EXCLUDES(mutex_);
   Outcome fetch_file(Wanted& wanted, const v1::JobFile& file) HYADES_EXCLUDES(mutex_);
   void check_again(const std::string& name) HYADES_EXCLUDES(mutex_);
   static Failure local_trouble(const core::Error& error);
@@ -100,6 +103,7 @@ class AssetFetcher {
   farm::ContentStore& store_;
   Owner& owner_;
   const std::chrono::milliseconds patience_;
+  const size_t most_pins_;  ///< each is an open file
 
   core::Mutex mutex_;
   core::CondVar wake_;
@@ -111,6 +115,7 @@ class AssetFetcher {
   std::set<std::string> claimed_ HYADES_GUARDED_BY(mutex_);     ///< files that are being fetched
   std::set<std::string> to_recheck_ HYADES_GUARDED_BY(mutex_);  ///< files that recheck() has named
   std::map<uint64_t, std::vector<farm::ContentPin>> pins_ HYADES_GUARDED_BY(mutex_);
+  size_t pinned_ HYADES_GUARDED_BY(mutex_) = 0;  ///< of these, and of jobs in work
   bool stop_ HYADES_GUARDED_BY(mutex_) = false;
 
   std::atomic<uint64_t> cache_bytes_;

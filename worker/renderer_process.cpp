@@ -49,6 +49,8 @@ core::Result<std::unique_ptr<RendererProcess>> RendererProcess::start(
                                     std::to_string(options.threads),
                                     "--memory",
                                     std::to_string(options.memory),
+                                    "--texture-disk",
+                                    std::to_string(options.texture_disk),
                                     "--cache",
                                     options.cache,
                                     "--sandbox",

@@ -22,6 +22,7 @@ struct RendererOptions {
   std::string cache;    ///< folder of the content store
   int threads = 1;
   uint64_t memory = 0;           ///< bytes; 0: no limit
+  uint64_t texture_disk = 0;     ///< bytes
   std::string sandbox = "auto";  ///< worker/render/sandbox.h
 };
 

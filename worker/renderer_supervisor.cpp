@@ -1,6 +1,7 @@
 #include "worker/renderer_supervisor.h"
 
 #include <chrono>
+#include <cstdint>
 
 #include <sys/stat.h>
 
@@ -14,6 +15,12 @@ using farm::LogLevel;
 constexpr std::chrono::seconds kHealthyLife{5};
 /// Deaths in a row before a first Ready that make the worker give up.
 constexpr int kMostEarlyDeaths = 3;
+
+uint64_t texture_disk(const WorkerOptions& options) {
+  constexpr uint64_t kTimes = 4;
+  const bool bounded = options.memory > 0 && options.memory <= UINT64_MAX / kTimes;
+  return options.texture_disk.value_or(bounded ? options.memory * kTimes : UINT64_MAX);
+}
 
 }  // namespace
 
@@ -30,9 +37,9 @@ void RendererSupervisor::start() {
   started_ = Clock::now();
   ready_ = false;
   cache_identity_ = folder_identity(files_folder(options));
-  auto started = RendererProcess::start(
-      {options.renderer, files_folder(options), options.threads, options.memory, options.sandbox},
-      *this);
+  auto started = RendererProcess::start({options.renderer, files_folder(options), options.threads,
+                                         options.memory, texture_disk(options), options.sandbox},
+                                        *this);
   if (!started) {
     worker_.log.note(LogLevel::error, started.error().message);
     worker_.loop.end(1);

@@ -17,7 +17,10 @@ struct WorkerOptions {
   uint64_t memory = 0;      ///< bytes for scenes and all else of the rendering child; 0: no limit
   std::string cache;        ///< folder for files_folder(), ids and tokens; made if it is missing
   uint64_t cache_size = 0;  ///< bytes; 0: no limit
-  std::string name;         ///< for people
+  /// Bytes of textures that a quarter of the memory does not hold, in a file; none: four times
+  /// `memory`. Never more than half of what is free on that disk.
+  std::optional<uint64_t> texture_disk;
+  std::string name;  ///< for people
   std::vector<std::string> tags;
   double grace = 2.0;        ///< seconds from SIGTERM to the end
   double hang_limit = 60;    ///< seconds without a new sample of a unit; 0: for ever (UnitClock)

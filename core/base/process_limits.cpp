@@ -46,4 +46,9 @@ Status limit_memory(uint64_t bytes) {
   return Error{std::string("memory cannot be limited: ") + std::strerror(errno)};
 }
 
+Status limit_file_size(uint64_t bytes) {
+  if (lower(RLIMIT_FSIZE, bytes)) return {};
+  return Error{std::string("the length of files cannot be limited: ") + std::strerror(errno)};
+}
+
 }  // namespace hyades::core

@@ -16,4 +16,8 @@ Status go_first();
 /// files in memory are not counted. 0: no limit.
 Status limit_memory(uint64_t bytes);
 
+/// From now on no file that this process writes gets longer than `bytes`, also none that was open
+/// before: whoever tries gets EFBIG where core::ignore_file_size_signal() was called.
+Status limit_file_size(uint64_t bytes);
+
 }  // namespace hyades::core

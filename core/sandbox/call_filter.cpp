@@ -25,8 +25,8 @@ constexpr const char* kRender[] = {
     "read", "readv", "pread64", "preadv", "write", "writev", "pwrite64", "pwritev", "lseek",
     "close", "close_range", "dup", "dup2", "dup3", "fstat", "newfstatat", "stat", "lstat", "statx",
     "statfs", "fstatfs", "access", "faccessat", "faccessat2", "readlink", "readlinkat", "getcwd",
-    "getdents64", "ftruncate", "fallocate", "fadvise64", "fsync", "fdatasync", "pipe", "pipe2",
-    "eventfd2", "poll", "ppoll", "select", "pselect6", "recvfrom", "shutdown",
+    "getdents64", "ftruncate", "fadvise64", "fsync", "fdatasync", "pipe", "pipe2", "eventfd2",
+    "poll", "ppoll", "select", "pselect6", "recvfrom", "shutdown",
     // memory
     "brk", "munmap", "mremap", "mprotect", "madvise", "msync", "mincore", "membarrier",
     "get_mempolicy",
@@ -122,6 +122,9 @@ void allow_some(Filter& filter) {
       {SCMP_SYS(ioctl), 1, kWhole, TCGETS},
       {SCMP_SYS(ioctl), 1, kWhole, TIOCGWINSZ},
       {SCMP_SYS(ioctl), 1, kWhole, FIONREAD},
+      // Not room beyond a file's end (KEEP_SIZE alone), which RLIMIT_FSIZE does not count.
+      {SCMP_SYS(fallocate), 1, kWhole, 0},
+      {SCMP_SYS(fallocate), 1, kWhole, FALLOC_FL_PUNCH_HOLE | FALLOC_FL_KEEP_SIZE},
       // Not to an address.
       {SCMP_SYS(sendto), 4, kWhole, 0},
       // abort() and raise() signal one's own threads; limits are asked and set for oneself.

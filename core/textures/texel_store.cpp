@@ -2,11 +2,13 @@
 
 #include <fcntl.h>
 #include <sys/mman.h>
+#include <sys/statvfs.h>
 #include <unistd.h>
 
 #include <cerrno>
 #include <cstddef>
 #include <filesystem>
+#include <map>
 #include <mutex>
 #include <span>
 #include <system_error>
@@ -35,46 +37,68 @@ std::string temporary_folder() {
 /// Parts of one file, each from a page of its own on.
 class TexelStore::CommonFile {
  public:
-  explicit CommonFile(Descriptor file) : file_(std::move(file)) {}
+  CommonFile(Descriptor file, uint64_t most) : file_(std::move(file)), most_(most) {}
 
   int descriptor() const { return file_.get(); }
 
-  off_t take(size_t size) {
+  /// The first room that is large enough: the file gets no longer than it has to.
+  Result<uint64_t> take(size_t size) {
+    if (!file_.valid()) return Error{"it could not be made"};
+    const uint64_t pages = whole_pages(size);
     const std::lock_guard lock(mutex_);
-    ++parts_;
-    return std::exchange(end_, end_ + whole_pages(size));
+    if (taken_ + pages > half_of_free(file_) + taken_ / 2) {
+      return Error{"it would take more than half of what is free on its disk"};
+    }
+    uint64_t begin = 0;
+    for (const auto& [other, end] : parts_) {
+      if (other - begin >= pages) break;
+      begin = end;
+    }
+    if (begin + pages > most_) {
+      return Error{
+          fmt::format("it may take {}, of which {} are in use (--texture-disk of a worker)",
+                      format_bytes(most_), format_bytes(taken_))};
+    }
+    parts_.emplace(begin, begin + pages);
+    taken_ += pages;
+    return begin;
   }
-  void give_back(off_t begin, size_t size) {
-    // Its room on the disk is free again; where the file system knows no holes, with the last part.
-    ::fallocate(file_.get(), FALLOC_FL_PUNCH_HOLE | FALLOC_FL_KEEP_SIZE, begin, whole_pages(size));
+  void give_back(uint64_t begin) {
     const std::lock_guard lock(mutex_);
-    if (--parts_ == 0) end_ = 0;
+    const auto part = parts_.find(begin);
+    const uint64_t size = part->second - begin;
+    // Its room on the disk is free again, where the file system knows holes.
+    ::fallocate(file_.get(), FALLOC_FL_PUNCH_HOLE | FALLOC_FL_KEEP_SIZE, static_cast<off_t>(begin),
+                static_cast<off_t>(size));
+    taken_ -= size;
+    parts_.erase(part);
   }
 
  private:
-  static off_t whole_pages(size_t size) {
-    const auto page = static_cast<size_t>(::sysconf(_SC_PAGESIZE));
-    return static_cast<off_t>((size + page - 1) / page * page);
+  static uint64_t whole_pages(size_t size) {
+    const auto page = static_cast<uint64_t>(::sysconf(_SC_PAGESIZE));
+    return (size + page - 1) / page * page;
   }
 
   const Descriptor file_;
+  const uint64_t most_;  ///< bytes, that the file's end may come to
   std::mutex mutex_;
-  off_t end_ = 0;     ///< guarded by mutex_, as is
-  size_t parts_ = 0;  ///< that are in use
+  std::map<uint64_t, uint64_t> parts_;  ///< guarded by mutex_: ends of what is in use, by begin
+  uint64_t taken_ = 0;                  ///< guarded by mutex_: bytes of these
 };
 
 /// Room for bytes in a file; what of it is in use has to be given back.
 struct TexelStore::Place {
   std::shared_ptr<CommonFile> common;
   Descriptor own;  ///< where there is no common file
-  off_t begin = 0;
+  uint64_t begin = 0;
   int descriptor() const { return common ? common->descriptor() : own.get(); }
 };
 
-TexelStore::TexelStore(uint64_t budget, Descriptor file)
+TexelStore::TexelStore(uint64_t budget, Descriptor file, uint64_t most)
     : budget_(budget),
-      folder_("the file that it was given"),
-      common_(std::make_shared<CommonFile>(std::move(file))),
+      folder_("the file for them"),
+      common_(std::make_shared<CommonFile>(std::move(file), most)),
       used_(std::make_shared<std::atomic<uint64_t>>(0)) {}
 
 TexelStore::TexelStore(uint64_t budget, std::string folder)
@@ -85,6 +109,12 @@ TexelStore::TexelStore(uint64_t budget, std::string folder)
 uint64_t TexelStore::default_budget() {
   const uint64_t memory = usable_memory();
   return memory > 0 ? memory / 4 : UINT64_MAX;
+}
+
+uint64_t TexelStore::half_of_free(const Descriptor& file) {
+  struct statvfs disk {};
+  if (::fstatvfs(file.get(), &disk) != 0) return 0;
+  return uint64_t{disk.f_bavail} * disk.f_frsize / 2;
 }
 
 Result<Bytes> TexelStore::keep(std::vector<std::byte> bytes) {
@@ -119,7 +149,11 @@ Result<Descriptor> TexelStore::open_file(const std::string& folder) {
 }
 
 Result<TexelStore::Place> TexelStore::place_for(size_t size) const {
-  if (common_) return Place{common_, Descriptor(), common_->take(size)};
+  if (common_) {
+    const auto begin = common_->take(size);
+    if (!begin) return begin.error();
+    return Place{common_, Descriptor(), *begin};
+  }
   auto file = open_file(folder_);
   if (!file) return file.error();
   return Place{nullptr, std::move(*file), 0};
@@ -136,18 +170,16 @@ Result<Bytes> TexelStore::keep_in_file(const std::vector<std::byte>& bytes) cons
   auto place = place_for(size);
   if (!place) return failed(place.error().message);
   // All room is taken now: a page that found none later would be the end of the process.
-  int error = ::posix_fallocate(place->descriptor(), place->begin, static_cast<off_t>(size));
-  if (error == 0 &&
-      !write_all_at(place->descriptor(), bytes, static_cast<uint64_t>(place->begin))) {
-    error = errno;
-  }
+  const auto begin = static_cast<off_t>(place->begin);
+  int error = ::posix_fallocate(place->descriptor(), begin, static_cast<off_t>(size));
+  if (error == 0 && !write_all_at(place->descriptor(), bytes, place->begin)) error = errno;
   void* address = MAP_FAILED;
   if (error == 0) {
-    address = ::mmap(nullptr, size, PROT_READ, MAP_SHARED, place->descriptor(), place->begin);
+    address = ::mmap(nullptr, size, PROT_READ, MAP_SHARED, place->descriptor(), begin);
     if (address == MAP_FAILED) error = errno;
   }
   if (error != 0) {
-    if (place->common) place->common->give_back(place->begin, size);
+    if (place->common) place->common->give_back(place->begin);
     return failed(io_reason(error));
   }
   // Neighbours in a file are neighbours in the picture, but not those of the next ray.
@@ -155,7 +187,7 @@ Result<Bytes> TexelStore::keep_in_file(const std::vector<std::byte>& bytes) cons
   std::shared_ptr<const void> owner(
       address, [size, common = place->common, begin = place->begin](const void* mapped) {
         ::munmap(const_cast<void*>(mapped), size);
-        if (common) common->give_back(begin, size);
+        if (common) common->give_back(begin);
       });
   return Bytes(std::move(owner), {static_cast<const std::byte*>(address), size});
 }

@@ -24,8 +24,10 @@ class TexelStore {
   explicit TexelStore(uint64_t budget = default_budget(), std::string folder = {});
 
   /// With one file for all that is kept in files, open to read and write and used by nobody else,
-  /// instead of a folder: for a process that may open none later.
-  TexelStore(uint64_t budget, Descriptor file);
+  /// instead of a folder: for a process that may open none later, and that reads what strangers
+  /// wrote. The file gets no longer than `most` bytes, and takes no more of its disk than it leaves
+  /// to others. Nothing is kept in a file that is none.
+  TexelStore(uint64_t budget, Descriptor file, uint64_t most);
 
   /// A file without a name in the folder, to read and write.
   static Result<Descriptor> open_file(const std::string& folder);
@@ -33,8 +35,11 @@ class TexelStore {
   /// A quarter of the memory that this process may take; without bound where that is not known.
   static uint64_t default_budget();
 
+  /// Half of what is free on the disk that the file lies on; 0 where that cannot be told.
+  static uint64_t half_of_free(const Descriptor& file);
+
   /// Keeps `bytes`. Those of a few pages stay in memory in any case. Errors: the budget is used up,
-  /// and the file cannot be written.
+  /// and the file cannot be written, or would get too long.
   Result<Bytes> keep(std::vector<std::byte> bytes);
 
   uint64_t in_memory() const { return used_->load(); }

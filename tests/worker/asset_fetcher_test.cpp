@@ -1,5 +1,8 @@
 #include "worker/asset_fetcher.h"
 
+#include <sys/resource.h>
+
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -218,6 +221,38 @@ TEST(AssetFetcher, ACacheThatIsMendedSoonIsTriedAgain) {
   std::filesystem::rename(folder.file("elsewhere"), folder.file("cache"));
   const std::vector<std::pair<uint64_t, std::string>> expected{{1, "there"}};
   EXPECT_EQ(reports.first(), expected);
+}
+
+/// Each is an open file, of which there are so many.
+TEST(AssetFetcher, AJobOfMoreFilesThanMayBeOpenGoesBackAndOthersGoOn) {
+  const Served served;
+  const test::TempFolder folder;
+  const auto store = farm::ContentStore::open({folder.file("cache"), 0});
+  ASSERT_TRUE(store.ok());
+  rlimit usual{};
+  ASSERT_EQ(::getrlimit(RLIMIT_NOFILE, &usual), 0);
+  const rlimit few{std::min<rlim_t>(usual.rlim_cur, 400), usual.rlim_max};
+  ASSERT_EQ(::setrlimit(RLIMIT_NOFILE, &few), 0);
+  {
+    Reports reports;
+    AssetFetcher fetcher(served.channel(), "", **store, reports, seconds(60));
+    v1::JobSpec large;
+    for (int i = 0; i < 500; ++i) *large.add_files() = spec_of(kSmall).files(0);
+    fetcher.fetch(1, large);
+    const auto said = reports.first();
+    ASSERT_EQ(said.size(), 1U);
+    EXPECT_TRUE(said[0].second.starts_with("the job has 500 files; this worker can keep 200"))
+        << said[0].second;
+    Reports others;
+    AssetFetcher fetcher_of_others(served.channel(), "", **store, others, seconds(60));
+    for (const uint64_t job : {2, 2, 2}) {  // of which nothing is counted twice
+      large.mutable_files()->DeleteSubrange(150, large.files_size() - 150);
+      fetcher_of_others.fetch(job, large);
+      EXPECT_EQ(others.first().back().second, "there");
+      fetcher_of_others.release(job);
+    }
+  }
+  ::setrlimit(RLIMIT_NOFILE, &usual);
 }
 
 }  // namespace

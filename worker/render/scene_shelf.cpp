@@ -20,11 +20,9 @@ constexpr size_t kFramesKept = 3;
 
 }  // namespace
 
-std::shared_ptr<core::TexelStore> SceneShelf::make_texel_store(uint64_t memory,
-                                                               core::Descriptor file) {
+std::shared_ptr<core::TexelStore> SceneShelf::make_texel_store(uint64_t memory, TexelFile texels) {
   const uint64_t budget = memory > 0 ? memory / 4 : core::TexelStore::default_budget();
-  if (!file.valid()) return std::make_shared<core::TexelStore>(budget);
-  return std::make_shared<core::TexelStore>(budget, std::move(file));
+  return std::make_shared<core::TexelStore>(budget, std::move(texels.file), texels.most);
 }
 
 void SceneShelf::add_job(uint64_t job, hyades::v1::JobSpec spec) {

@@ -30,15 +30,21 @@ struct ShelvedFrame {
   std::string document;    ///< the job's document, for messages
 };
 
+/// For the texels that a quarter of the memory does not hold: an empty file, open to read and
+/// write, and how long it may get. Where it is none, there is no room but the memory.
+struct TexelFile {
+  core::Descriptor file;
+  uint64_t most = 0;  ///< bytes
+};
+
 /// Jobs and the scenes of their frames, in memory within a budget. Frames of a job share their
 /// geometry and images. Files come out of the content store through the job's manifest, and from
 /// nowhere else.
 class SceneShelf {
  public:
   /// `memory` in bytes, of the whole process: what was not used for longest goes when more is in
-  /// use than that; 0: no limit. `texels`: an empty file for the texels that a quarter of the
-  /// memory does not hold; where it is none they go to temporary files, which a sandbox refuses.
-  SceneShelf(farm::ContentStore& store, uint64_t memory, core::Descriptor texels)
+  /// use than that; 0: no limit.
+  SceneShelf(farm::ContentStore& store, uint64_t memory, TexelFile texels)
       : store_(store), memory_(memory), texels_(make_texel_store(memory, std::move(texels))) {}
 
   void add_job(uint64_t job, hyades::v1::JobSpec spec) HYADES_EXCLUDES(mutex_);
@@ -73,7 +79,7 @@ class SceneShelf {
     uint64_t used = 0;
   };
 
-  static std::shared_ptr<core::TexelStore> make_texel_store(uint64_t memory, core::Descriptor file);
+  static std::shared_ptr<core::TexelStore> make_texel_store(uint64_t memory, TexelFile texels);
   core::Result<std::shared_ptr<LoadedJob>> read(const hyades::v1::JobSpec& spec) const;
   bool drop_one_locked(uint64_t but_job, size_t frames_kept) HYADES_REQUIRES(mutex_);
   void make_room(uint64_t job) HYADES_EXCLUDES(mutex_);

@@ -6,6 +6,7 @@
 #include <chrono>
 #include <filesystem>
 #include <fstream>
+#include <sstream>
 #include <string>
 #include <thread>
 #include <vector>
@@ -56,6 +57,24 @@ TEST(WorkerSandbox, TheRendererIsTheFirstToGoWhenMemoryRunsOut) {
   const std::string renderer = "/proc/" + std::to_string(worker.renderer());
   EXPECT_GE(std::stoi("0" + read_file(renderer + "/oom_score_adj")), 800);
   EXPECT_FALSE(has(worker.log(), "first to go")) << worker.log();
+}
+
+/// Also by who has taken it over: the file for texels is all that it may write.
+TEST(WorkerSandbox, TheRendererWritesNoLongFiles) {
+  const test::TempFolder folder;
+  const Made made = make_job();
+  FakeCoordinator coordinator(made.job);
+  WorkerProcess worker(coordinator.address(), folder.path().string(), {"--texture-disk", "100M"});
+  ASSERT_TRUE(coordinator.wait_for_all()) << worker.log();
+  const std::string limits = read_file("/proc/" + std::to_string(worker.renderer()) + "/limits");
+  const size_t at = limits.find("Max file size");
+  ASSERT_NE(at, std::string::npos);
+  std::istringstream line(limits.substr(at + std::string("Max file size").size()));
+  std::string soft;
+  std::string hard;
+  line >> soft >> hard;
+  EXPECT_EQ(soft, "104857600");
+  EXPECT_EQ(hard, "104857600");
 }
 
 /// The process that renders notices, and its worker removes.

@@ -29,6 +29,7 @@
 #include <thread>
 
 #include "core/base/hash.h"
+#include "core/base/machine.h"
 #include "core/base/process_limits.h"
 #include "farm/content_store.h"
 #include "tests/support/temp_folder.h"
@@ -274,6 +275,25 @@ TEST_F(Sandbox, FilesThatAreOpenTakeTexels) {
       return false;
     const void* at = ::mmap(nullptr, 4096, PROT_READ, MAP_SHARED, file, 4096);
     return at != MAP_FAILED && *static_cast<const char*>(at) == 'y';
+  });
+  ::close(before);
+  ::close(kFirstClosed - 1);
+}
+
+/// Room behind a file's end would not count.
+TEST_F(Sandbox, FilesThatAreOpenTakeNoMoreRoomThanTheyMay) {
+  std::ofstream(folder_.file("texels")) << "x";
+  const int before = ::open(folder_.file("texels").c_str(), O_RDWR | O_CLOEXEC);
+  ASSERT_EQ(::dup2(before, kFirstClosed - 1), static_cast<int>(kFirstClosed - 1));
+  expect([] {
+    const int file = kFirstClosed - 1;
+    core::ignore_file_size_signal();
+    if (!core::limit_file_size(1U << 20U)) return false;
+    if (::posix_fallocate(file, 0, 1U << 20U) != 0) return false;
+    if (::fallocate(file, FALLOC_FL_PUNCH_HOLE | FALLOC_FL_KEEP_SIZE, 0, 4096) != 0) return false;
+    return ::posix_fallocate(file, 0, 2U << 20U) == EFBIG &&
+           ::fallocate(file, FALLOC_FL_KEEP_SIZE, 0, 2U << 20U) != 0 && errno == EPERM &&
+           ::pwrite(file, "y", 1, 2U << 20U) < 0 && errno == EFBIG;
   });
   ::close(before);
   ::close(kFirstClosed - 1);
