@@ -179,8 +179,7 @@ void ConnectionGate::note_over(const std::string& address, bool broken) {
 void ConnectionGate::shut_out(Id id) {
   const Time now = std::chrono::steady_clock::now();
   const Connection& connection = connections_.at(id);
-  const std::string& whose =
-      connection.machine.empty() ? connection.token_id : connection.machine;
+  const std::string& whose = connection.machine.empty() ? connection.token_id : connection.machine;
   std::erase_if(resting_, [&](const auto& other) { return other.second <= now; });
   if (!whose.empty()) resting_[whose] = now + limits_.broken_rest;
   drop(id);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <string>
 
 #include "core/base/bytes.h"
@@ -30,8 +31,8 @@ Result<FilmFile> read_film_exr(const std::string& path);
 /// Reads a film file from its bytes, as read_film_exr(path) does; `name` is used in errors only.
 Result<FilmFile> read_film_exr(const Bytes& bytes, const std::string& name);
 
-/// The memory [bytes] that read_film_exr(bytes, name) takes for the film, but for ids of objects and
-/// materials; errors as there, as far as the header tells.
+/// The memory [bytes] that read_film_exr(bytes, name) takes for the film, but for ids of objects
+/// and materials; errors as there, as far as the header tells.
 Result<uint64_t> film_exr_memory(const Bytes& bytes, const std::string& name);
 
 /// What a film file belongs to, without its pixels, which are not looked at.

@@ -132,8 +132,7 @@ TEST_F(FilmExr, WhatItTakesIsKnownBeforeItIsRead) {
   const FilmFile file = splatted({4, 2, 60, 20}, {0, 1});
   ASSERT_TRUE(write_film_exr(path("a.exr"), file).ok());
   const std::string bytes = read_bytes(path("a.exr"));
-  const auto memory =
-      film_exr_memory(Bytes(nullptr, std::as_bytes(std::span(bytes))), "a.exr");
+  const auto memory = film_exr_memory(Bytes(nullptr, std::as_bytes(std::span(bytes))), "a.exr");
   ASSERT_TRUE(memory.ok()) << memory.error().message;
   EXPECT_EQ(*memory, film_memory(file.film.layout(), info().crop));
   EXPECT_FALSE(film_exr_memory(Bytes(nullptr, std::as_bytes(std::span("none"))), "a.exr").ok());
