@@ -47,7 +47,8 @@ class TexelStore::CommonFile {
     const uint64_t pages = whole_pages(size);
     const std::lock_guard lock(mutex_);
     if (taken_ + pages > half_of_free(file_) + taken_ / 2) {
-      return Error{"it would take more than half of what is free on its disk"};
+      return Error{
+          "it would take more than half of what is free on its disk (TMPDIR names another)"};
     }
     uint64_t begin = 0;
     for (const auto& [other, end] : parts_) {
