@@ -10,6 +10,7 @@
 #include "cli/film_room.h"
 #include "cli/load_job.h"
 #include "cli/number_range.h"
+#include "cli/scene_options.h"
 #include "core/base/parallel.h"
 #include "core/base/text.h"
 #include "core/render/render_frame.h"
@@ -32,10 +33,11 @@ std::set<int> thread_counts(int most) {
   return counts;
 }
 
-int scaling(const std::string& path, int most_threads, uint32_t samples) {
+int scaling(const std::string& path, const SceneOptions& scene_options, int most_threads,
+            uint32_t samples) {
   using Clock = std::chrono::steady_clock;
   const auto load_begin = Clock::now();
-  auto loaded = load_job(path);
+  auto loaded = load_job(path, scene_options);
   if (!loaded) return kBadInput;
   core::Job& job = loaded->job;
   if (samples > 0) job.sampling.samples = samples;
@@ -46,7 +48,7 @@ int scaling(const std::string& path, int most_threads, uint32_t samples) {
   core::SceneCache cache(*loaded->assets);
   auto scene = core::build_scene(job, job.frames.first, cache);
   if (!scene) {
-    std::fprintf(stderr, "%s\n", scene.error().message.c_str());
+    print_error(scene.error());
     return 1;
   }
   std::printf("%s: %s triangles, %d x %d, %u samples; scene ready after %.3f s\n\n",
@@ -81,12 +83,14 @@ int bench_command(int argc, char** argv) {
   CLI::App app("Measures this machine.", "hyades bench");
   app.require_subcommand(1);
   std::string path = "jobs/mesh-100k/job.yaml";
+  SceneOptions scene_options;
   int threads = core::hardware_threads();
   uint32_t samples = 0;
   auto* command =
       app.add_subcommand("scaling", "renders the first frame of a job with 1..N threads");
   command->add_option("job", path, "the job (.yaml), or a scene or mesh (.glb, ...)")
       ->capture_default_str();
+  declare_scene_options(*command, scene_options);
   command->add_option("--threads", threads, "most threads")
       ->check(in_range(1, 1024))
       ->capture_default_str();
@@ -97,7 +101,7 @@ int bench_command(int argc, char** argv) {
       "  hyades bench scaling jobs/cornell/job.yaml --threads 8 --samples 64\n"
       "exit status: 0 measured, 2 the job or the arguments are wrong");
   if (const auto status = parse_command_line(app, argc, argv, kBadInput)) return *status;
-  return scaling(path, threads, samples);
+  return scaling(path, scene_options, threads, samples);
 }
 
 }  // namespace hyades::cli

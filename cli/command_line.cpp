@@ -92,4 +92,8 @@ std::optional<int> parse_command_line(CLI::App& app, int argc, char** argv, int 
   return std::nullopt;
 }
 
+void print_error(const core::Error& error) {
+  std::fprintf(stderr, "%s\n", core::printable_lines(error.message).c_str());
+}
+
 }  // namespace hyades::cli

@@ -5,6 +5,8 @@
 
 #include <CLI/CLI.hpp>
 
+#include "core/base/result.h"
+
 namespace hyades::cli {
 
 /// Exit status of commands that refuse their arguments or what they read.
@@ -17,5 +19,8 @@ std::string in_our_words(const CLI::App& app, const CLI::ParseError& error);
 /// after --help, or `wrong` after one line on standard error, "hyades COMMAND: what is wrong".
 std::optional<int> parse_command_line(CLI::App& app, int argc, char** argv,
                                       int wrong = kExitRefused);
+
+/// A line on standard error for each line of `error`, which may tell what a stranger's file says.
+void print_error(const core::Error& error);
 
 }  // namespace hyades::cli

@@ -1,3 +1,4 @@
+#include "cli/command_line.h"
 #include "cli/film_commands.h"
 
 #include <unistd.h>
@@ -90,7 +91,7 @@ int finish_command(int argc, char** argv) {
   }
   const core::FpMode mode;
   if (const core::Status done = finish(argv[1]); !done) {
-    std::fprintf(stderr, "%s\n", done.error().message.c_str());
+    print_error(done.error());
     return 1;
   }
   return 0;
@@ -117,7 +118,7 @@ int finish_video_command(int argc, char** argv) {
   }
   std::signal(SIGTERM, [](int) { g_asked_to_end = 1; });
   if (const core::Status done = make_video(argv[1]); !done) {
-    std::fprintf(stderr, "%s\n", done.error().message.c_str());
+    print_error(done.error());
     return 1;
   }
   return 0;

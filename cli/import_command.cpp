@@ -61,7 +61,7 @@ int import_command(int argc, char** argv) {
   if (missing_textures) request.missing = core::MissingTextures::magenta;
   const auto written = core::write_scene_job(request);
   if (!written) {
-    std::fprintf(stderr, "%s\n", written.error().message.c_str());
+    print_error(written.error());
     return kBadInput;
   }
   for (const std::string& note : written->notes) {

@@ -133,14 +133,14 @@ int tell(const std::vector<std::string>& paths, bool json) {
   for (const std::string& path : paths) {
     const auto image = core::read_image_file(path);
     if (!image) {
-      std::fprintf(stderr, "hyades info: %s\n", image.error().message.c_str());
+      print_error(image.error().in("hyades info"));
       return kExitRefused;
     }
     std::optional<core::FilmFile> film;
     if (core::read_film_info(path)) {
       auto read = core::read_film_exr(path);
       if (!read) {
-        std::fprintf(stderr, "hyades info: %s\n", read.error().message.c_str());
+        print_error(read.error().in("hyades info"));
         return kExitRefused;
       }
       film = std::move(*read);

@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <utility>
 
+#include "cli/command_line.h"
 #include "cli/frame_range.h"
 #include "cli/number_range.h"
 #include "core/job/parse.h"
@@ -18,7 +19,7 @@ std::optional<LoadedJob> read_job_file(const std::string& path, Diagnostics& dia
   if (is_blend_file(path)) {
     auto made = BlendJob::make(path, scene.frames);
     if (!made) {
-      std::fprintf(stderr, "%s\n", made.error().message.c_str());
+      print_error(made.error());
       return std::nullopt;
     }
     loaded.blend = std::move(*made);
@@ -26,14 +27,14 @@ std::optional<LoadedJob> read_job_file(const std::string& path, Diagnostics& dia
   auto files =
       core::JobFiles::open(loaded.blend ? loaded.blend->path() : path, job_file_options(scene));
   if (!files) {
-    std::fprintf(stderr, "%s\n", files.error().message.c_str());
+    print_error(files.error());
     return std::nullopt;
   }
   loaded.files = std::move(*files);
   core::AssetResolver& door = loaded.files->files();
   const auto text = door.open(loaded.files->document());
   if (!text) {
-    std::fprintf(stderr, "%s\n", text.error().message.c_str());
+    print_error(text.error());
     return std::nullopt;
   }
   loaded.assets = std::make_unique<core::RecordingResolver>(door);
@@ -55,7 +56,7 @@ std::optional<LoadedJob> load_job(const std::string& path, const SceneOptions& s
 std::optional<std::vector<int32_t>> select_frames(const core::Job& job, const std::string& text) {
   const auto range = parse_frames(job.frames, text);
   if (!range) {
-    std::fprintf(stderr, "%s\n", range.error().message.c_str());
+    print_error(range.error());
     return std::nullopt;
   }
   const int64_t count = frame_count(range->first, range->last, range->step);

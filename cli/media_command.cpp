@@ -74,7 +74,7 @@ int make(const MediumDescription& wanted, const std::string& file, bool json,
     return 0;
   }
   if (auto written = core::write_file(file, std::as_bytes(std::span(text))); !written) {
-    std::fprintf(stderr, "hyades media: %s\n", written.error().message.c_str());
+    print_error(written.error().in("hyades media"));
     return 1;
   }
   std::fprintf(stderr, "wrote %s, for jobs whose unit is %s\n", file.c_str(), unit.name.c_str());

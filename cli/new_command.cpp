@@ -116,7 +116,7 @@ int new_command(int argc, char** argv) {
   }
   const std::string text = job_called(name, animated);
   if (const auto written = core::write_file(file, std::as_bytes(std::span(text))); !written) {
-    std::fprintf(stderr, "hyades new: %s\n", written.error().message.c_str());
+    print_error(written.error().in("hyades new"));
     return 1;
   }
   std::fprintf(stderr, "wrote %s: 'hyades render %s --preview' shows it\n", file.c_str(),

@@ -1,14 +1,19 @@
 #include "cli/own_files.h"
 
 #include <algorithm>
+#include <cctype>
 #include <cstddef>
 #include <filesystem>
 #include <fstream>
 #include <ios>
+#include <optional>
 #include <string_view>
 #include <system_error>
 
 #include <fmt/format.h>
+
+#include "core/film/film_exr.h"
+#include "core/image/read_image.h"
 
 namespace hyades::cli {
 namespace {
@@ -27,15 +32,51 @@ std::string part_of(std::ifstream& file, std::streamoff from, std::streamoff byt
   return text;
 }
 
+bool is_of_name(char c) {
+  return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_' || c == '-' || c == '.';
+}
+
+/// Whether `text` holds `job`, not as a part of a longer name.
+bool holds_name(std::string_view text, const std::string& job) {
+  for (size_t at = text.find(job); at != std::string_view::npos; at = text.find(job, at + 1)) {
+    const size_t end = at + job.size();
+    if (at > 0 && is_of_name(text[at - 1])) continue;
+    if (end == text.size() || !is_of_name(text[end])) return true;
+  }
+  return false;
+}
+
+/// What a PNG or an EXR says that it was rendered for; nothing where it is another file, or says
+/// nothing.
+std::optional<std::string> told_job(const std::string& path) {
+  const bool png = path.ends_with(".png");
+  if (!png && !path.ends_with(".exr")) return std::nullopt;
+  if (const auto texts = png ? core::read_png_texts(path) : core::read_exr_texts(path)) {
+    for (const auto& [name, value] : *texts) {
+      if (name == "hyades.job") return value;
+    }
+  }
+  if (png) return std::nullopt;
+  const auto film = core::read_film_info(path);
+  return film ? std::optional(film->job_name) : std::nullopt;
+}
+
 bool names_job(std::string_view header, const std::string& job) {
   // Formats write other letters than these in ways of their own.
-  const bool plain =
-      std::all_of(job.begin(), job.end(), [](char c) { return c > ' ' && c <= '~' && c != '\\'; });
+  const bool ascii =
+      std::all_of(job.begin(), job.end(), [](char c) { return c >= ' ' && c <= '~' && c != '\\'; });
+  constexpr std::string_view kLine = "hyades.job: ";  // in the comments of JPEG and TIFF
+  const size_t line = header.find(kLine);
+  if (ascii && line != std::string_view::npos) {
+    const std::string_view rest = header.substr(line + kLine.size());
+    return rest.starts_with(job) && (rest.size() == job.size() || rest[job.size()] < ' ');
+  }
+  const bool plain = ascii && job.find(' ') == std::string::npos;
   for (const std::string_view mark : {"hyades.job", "hyades film "}) {
     const size_t at = header.find(mark);
     if (at == std::string_view::npos) continue;
     const std::string_view after = header.substr(at + mark.size(), kBefore + job.size());
-    if (!plain || after.find(job) != std::string_view::npos) return true;
+    if (!plain || holds_name(after, job)) return true;
   }
   return false;
 }
@@ -43,6 +84,7 @@ bool names_job(std::string_view header, const std::string& job) {
 }  // namespace
 
 bool is_of_job(const std::string& path, const std::string& job) {
+  if (const auto told = told_job(path)) return *told == job;
   std::error_code none;
   std::ifstream file(path, std::ios::binary);
   const auto size = static_cast<std::streamoff>(fs::file_size(path, none));

@@ -1,8 +1,6 @@
 #include "cli/render_options.h"
 
 #include <algorithm>
-#include <array>
-#include <charconv>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -10,7 +8,6 @@
 #include <filesystem>
 #include <optional>
 #include <string_view>
-#include <system_error>
 #include <utility>
 
 #include <fmt/format.h>
@@ -21,6 +18,7 @@
 #include "cli/frame_range.h"
 #include "cli/number_range.h"
 #include "cli/preview.h"
+#include "cli/whole_numbers.h"
 #include "core/job/film_file.h"
 #include "core/job/noise_threshold.h"
 #include "core/job/output_path.h"
@@ -78,18 +76,12 @@ std::string part_text(const RenderOptions& options) {
 
 /// "640x360".
 std::optional<std::pair<int32_t, int32_t>> size_in(const std::string& text) {
-  const size_t cross = text.find('x');
-  if (cross == std::string::npos) return std::nullopt;
-  std::array<int32_t, 2> sides{};
-  const std::array<std::string_view, 2> parts = {std::string_view(text).substr(0, cross),
-                                                 std::string_view(text).substr(cross + 1)};
-  for (size_t i = 0; i < 2; ++i) {
-    const auto read = std::from_chars(parts[i].data(), parts[i].data() + parts[i].size(), sides[i]);
-    if (read.ec != std::errc() || read.ptr != parts[i].data() + parts[i].size())
-      return std::nullopt;
-    if (sides[i] < 1 || sides[i] > kMostSide) return std::nullopt;
+  const auto sides = whole_numbers(text, 'x', 2);
+  if (!sides) return std::nullopt;
+  for (const int side : *sides) {
+    if (side < 1 || side > kMostSide) return std::nullopt;
   }
-  return std::pair(sides[0], sides[1]);
+  return std::pair((*sides)[0], (*sides)[1]);
 }
 
 std::string size_error(const std::string& text) {
@@ -148,10 +140,7 @@ void declare_what(CLI::App& app, RenderOptions& options, Words& words) {
   app.add_option("--scale", options.scale, "of the film's size: 0.5 has half as many columns")
       ->check(in_range(0.001, 100.0))
       ->excludes(size);
-  app.add_option("--crop", options.crop, "X0,Y0,X1,Y1: render only these pixels")
-      ->delimiter(',')
-      ->expected(4)
-      ->type_name("X0,Y0,X1,Y1");
+  add_whole_numbers(app, "--crop", options.crop, "X0,Y0,X1,Y1", "render only these pixels");
   // Not a plain flag: CLI11 2.4 sets those that have a default and were not given, and counts them.
   app.add_flag_function(
          "--preview{320}", [&words](int64_t width) { words.preview = width; },

@@ -8,6 +8,8 @@
 #include "cli/command_line.h"
 #include "cli/load_job.h"
 #include "cli/number_range.h"
+#include "cli/scene_options.h"
+#include "cli/whole_numbers.h"
 #include "core/job/layers.h"
 #include "core/render/frame_renderer.h"
 #include "core/scene/build_scene.h"
@@ -22,21 +24,21 @@ int replay_command(int argc, char** argv) {
       "where light came in.",
       "hyades replay");
   std::string path;
+  SceneOptions scene_options;
   int32_t frame = 0;
   std::vector<int> pixel;
   uint32_t sample = 0;
   app.add_option("job", path, "the job (.yaml), or a scene or mesh (.glb, ...)")->required();
+  declare_scene_options(app, scene_options);
   auto* frame_option = app.add_option("--frame", frame, "frame number (default: the job's first)");
-  app.add_option("--pixel", pixel, "X,Y in full-frame pixels, 0,0 is the top left")
-      ->required()
-      ->delimiter(',')
-      ->expected(2);
+  add_whole_numbers(app, "--pixel", pixel, "X,Y", "in full-frame pixels, 0,0 is the top left")
+      ->required();
   app.add_option("--sample", sample, "index of the sample within the pixel")->default_val(0);
   app.footer(
       "examples:\n  hyades replay jobs/cornell/job.yaml --pixel 120,80 --sample 3\n"
       "exit status: 0 told, 2 the job or the arguments are wrong");
   if (const auto status = parse_command_line(app, argc, argv, kBadInput)) return *status;
-  auto loaded = load_job(path);
+  auto loaded = load_job(path, scene_options);
   if (!loaded) return kBadInput;
   const core::Job& job = loaded->job;
   if (frame_option->empty()) frame = job.frames.first;
@@ -50,7 +52,7 @@ int replay_command(int argc, char** argv) {
   core::SceneCache cache(*loaded->assets);
   auto scene = core::build_scene(job, frame, cache);
   if (!scene) {
-    std::fprintf(stderr, "%s\n", scene.error().message.c_str());
+    print_error(scene.error());
     return 1;
   }
   const core::FrameRenderer renderer(*scene, job, frame, core::needed_layers(job));

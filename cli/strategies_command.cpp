@@ -9,6 +9,7 @@
 #include "cli/command_line.h"
 #include "cli/load_job.h"
 #include "cli/number_range.h"
+#include "cli/scene_options.h"
 #include "core/base/parallel.h"
 #include "core/finish/frame_outputs.h"
 #include "core/render/render_frame.h"
@@ -54,7 +55,7 @@ bool write_strategy(const std::shared_ptr<const core::Scene>& scene, core::Job j
   info.samples = job.sampling.samples;
   const core::OutputDesc outputs[] = {exr, png};
   const auto written = core::write_outputs(outputs, options.output, info, rendered.film);
-  if (!written) std::fprintf(stderr, "%s\n", written.error().message.c_str());
+  if (!written) print_error(written.error());
   for (size_t i = 0; written && i < written->size(); ++i)
     std::printf("wrote %s\n", (*written)[i].c_str());
   return static_cast<bool>(written);
@@ -72,8 +73,10 @@ int strategies_command(int argc, char** argv) {
       "hyades strategies");
   StrategiesOptions options;
   std::string path;
+  SceneOptions scene_options;
   uint32_t samples = 0;
-  app.add_option("job", path, "the job (.yaml)")->required();
+  app.add_option("job", path, "the job (.yaml), or a scene or mesh (.glb, ...)")->required();
+  declare_scene_options(app, scene_options);
   auto* frame = app.add_option("--frame", options.frame, "frame number (default: the job's first)");
   app.add_option("--events", options.events, "most scattering events")
       ->check(in_range(1, 16))
@@ -90,7 +93,7 @@ int strategies_command(int argc, char** argv) {
       "exit status: 0 written, 1 a picture could not be written, 2 the job or the arguments are "
       "wrong");
   if (const auto status = parse_command_line(app, argc, argv, kBadInput)) return *status;
-  auto loaded = load_job(path);
+  auto loaded = load_job(path, scene_options);
   if (!loaded) return kBadInput;
   core::Job& job = loaded->job;
   if (frame->empty()) options.frame = job.frames.first;
@@ -105,7 +108,7 @@ int strategies_command(int argc, char** argv) {
   core::SceneCache cache(*loaded->assets);
   auto scene = core::build_scene(job, options.frame, cache);
   if (!scene) {
-    std::fprintf(stderr, "%s\n", scene.error().message.c_str());
+    print_error(scene.error());
     return 1;
   }
   for (const std::string& warning : (*scene)->warnings)

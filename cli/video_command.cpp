@@ -10,6 +10,7 @@
 #include "cli/frame_range.h"
 #include "cli/interrupt.h"
 #include "cli/load_job.h"
+#include "cli/scene_options.h"
 #include "cli/videos.h"
 #include "core/job/output_path.h"
 
@@ -38,11 +39,13 @@ bool takes_anothers_place(const core::Job& job, const std::string& folder,
 
 int video_command(int argc, char** argv) {
   std::string path;
+  SceneOptions scene;
   std::string range;
   std::string folder = ".";
   bool quiet = false;
   CLI::App app("Makes a job's videos of the pictures that its frames have left.", "hyades video");
   app.add_option("job", path, "the job (.yaml)")->required();
+  declare_scene_options(app, scene);
   app.add_option("--frames", range, "only of these frames: 1-10 or 1-10x2 (default: all)")
       ->check(no_frames_error);
   app.add_option("-o,--output", folder, "folder of the render's outputs")
@@ -58,7 +61,7 @@ int video_command(int argc, char** argv) {
       "exit status: 0 done, 1 something failed, 2 the job or the arguments are wrong, 130 "
       "interrupted");
   if (const auto status = parse_command_line(app, argc, argv, kBadInput)) return *status;
-  const auto loaded = load_job(path);
+  const auto loaded = load_job(path, scene);
   if (!loaded) return kBadInput;
   const core::Job& job = loaded->job;
   if (job.videos.empty()) {

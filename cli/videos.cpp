@@ -2,6 +2,7 @@
 
 #include <cstdio>
 
+#include "cli/command_line.h"
 #include "cli/interrupt.h"
 #include "core/base/text.h"
 
@@ -40,7 +41,7 @@ bool make_videos(const core::Job& job, const std::string& folder,
                    at_hand.pictures.c_str());
     }
     if (const auto made = core::make_video(at_hand, frames, patience); !made) {
-      std::fprintf(stderr, "%s\n", made.error().message.c_str());
+      print_error(made.error());
       all = false;
     } else if (!quiet) {
       std::fprintf(stderr, "wrote %s/%s\n", folder.c_str(), file.c_str());

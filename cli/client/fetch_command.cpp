@@ -212,9 +212,10 @@ class FetchRun {
     std::vector<v1::OutputFile> files;
     uint64_t bytes = 0;
     Outcome failure = client_.outputs(request, [&](const v1::OutputFile& file) -> Outcome {
+      if (auto too_many = client_.count_part(file, bytes)) return too_many;
       if (options_.follow) return take(file);
       files.push_back(file);
-      return client_.count_part(file, bytes);
+      return std::nullopt;
     });
     for (const v1::OutputFile& file : files) {
       if (failure) break;

@@ -18,6 +18,7 @@
 #include "cli/client/upload.h"
 #include "cli/client/watch.h"
 #include "cli/client_commands.h"
+#include "cli/command_line.h"
 #include "cli/frame_range.h"
 #include "cli/number_range.h"
 #include "cli/scene_options.h"
@@ -155,16 +156,6 @@ Result<v1::SubmitRequest> make_request(const farm::JobPackage& package,
 }
 
 /// Several lines: every complaint about the job, with its path as it can be shown.
-void print_complaints(std::string text, const std::string& path) {
-  const std::string shown = core::printable(path);
-  if (shown != path) {
-    for (size_t at = 0; (at = text.find(path, at)) != std::string::npos; at += shown.size()) {
-      text.replace(at, path.size(), shown);
-    }
-  }
-  std::fprintf(stderr, "%s\n", text.c_str());
-}
-
 Outcome submit(FarmClient& client, const farm::JobPackage& package, core::JobFiles& files,
                const v1::SubmitRequest& request, bool quiet, v1::Job& job) {
   for (int round = 1;; ++round) {
@@ -212,7 +203,7 @@ int submit_command(int argc, char** argv) {
   const auto package = farm::package_job(door.document(), options.path, door.files());
   print_notes(door);
   if (!package) {
-    print_complaints(package.error().message, options.path);
+    print_error(package.error());
     return kBadArguments;
   }
   const auto request = make_request(*package, options);

@@ -5,6 +5,7 @@
 #include <tuple>
 #include <utility>
 
+#include "core/base/printable.h"
 #include "core/job/scene_document.h"
 
 namespace hyades::core {
@@ -51,7 +52,7 @@ std::string Diagnostics::to_string() const {
   });
   std::string text;
   for (const Diagnostic* d : order) text += d->to_string() + "\n";
-  return text;
+  return printable_lines(text);  // a stranger may have written the job
 }
 
 Error Diagnostics::to_error() const {
