@@ -2,6 +2,7 @@
 #include <chrono>
 #include <cstdint>
 #include <cstdio>
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <utility>
@@ -18,6 +19,7 @@
 #include "coordinator/local/local_plan.h"
 #include "coordinator/scheduler/run_length.h"
 #include "coordinator/scheduler/tile_grid.h"
+#include "core/base/atomic_file.h"
 #include "core/base/hash.h"
 #include "core/base/machine.h"
 #include "core/base/parallel.h"
@@ -102,6 +104,7 @@ struct CheckOptions {
   std::string curve;  ///< empty: the job is summed up
   bool no_probe = false;
   bool files = false;
+  std::string made;  ///< folder; empty: what is made of scenes is written nowhere
   SceneOptions scene;
 };
 
@@ -118,6 +121,11 @@ std::optional<int> parse_check_options(int argc, char** argv, CheckOptions& opti
   app.add_flag("--files", options.files,
                "print the files that the job is read from instead, as JSON: its text first, then "
                "what it names, relative to its folder");
+  app.add_option("--made", options.made,
+                 "with --files, also write those that are made of scenes of other tools and lie on "
+                 "no disk into this folder, each under its SHA-256")
+      ->needs("--files")
+      ->type_name("DIR");
   app.add_flag("--no-probe", options.no_probe, "do not render a few pixels to estimate the time");
   app.footer(
       "examples:\n  hyades check jobs/cornell/job.yaml\nexit status: 0 good, 2 mistakes found");
@@ -134,7 +142,7 @@ core::Status print_curve(const core::Job& job, const std::string& name) {
 }
 
 /// Every file that travels with the job, for programs that bring it to a farm.
-core::Status print_files(const LoadedJob& loaded) {
+core::Status print_files(const LoadedJob& loaded, const std::string& made) {
   core::RecordingResolver text(loaded.files->files());
   if (const auto opened = text.open(loaded.files->document()); !opened) return opened.error();
   std::vector<core::AssetRecord> all = text.records();
@@ -142,6 +150,11 @@ core::Status print_files(const LoadedJob& loaded) {
   nlohmann::ordered_json list = nlohmann::ordered_json::array();
   for (const core::AssetRecord& file : all) {
     list.push_back({{"path", file.reference}, {"sha256", file.sha256}, {"size", file.size}});
+    if (made.empty() || !loaded.files->is_made(file.reference)) continue;
+    auto bytes = loaded.files->files().open(file.reference);
+    if (!bytes) return bytes.error();
+    const std::string path = (std::filesystem::path(made) / file.sha256).string();
+    if (auto done = core::write_file(path, bytes->span()); !done) return done;
   }
   std::printf("%s\n", list.dump(2, ' ', false, nlohmann::json::error_handler_t::replace).c_str());
   return {};
@@ -253,13 +266,13 @@ int check_command(int argc, char** argv) {
     return kBadInput;
   }
   if (done && options.files) {
-    done = print_files(*loaded);
+    done = print_files(*loaded, options.made);
   } else if (done) {
     done = options.curve.empty() ? print_summary(options, loaded->job, cache)
                                  : print_curve(loaded->job, options.curve);
   }
   if (done) return 0;
-  std::fprintf(stderr, "%s\n", done.error().message.c_str());
+  print_error(done.error());
   return kBadInput;
 }
 

@@ -36,6 +36,9 @@ class JobFiles {
   /// The name of the job's text in files().
   const std::string& document() const { return document_; }
 
+  /// Whether a file is made of a scene, and lies on no disk.
+  bool is_made(const std::string& reference) const { return !importing_->is_on_disk(reference); }
+
   /// What importers left out, and pictures that are missing: one line each.
   std::vector<std::string> notes() const;
 

@@ -26,8 +26,13 @@ _ENDS_WITHIN = 10.0  # seconds, after it was asked to
 def find_program(program: PathLike | None = None) -> str:
     """The program: `program`, what the environment variable HYADES names, one on PATH, or the one
     that was built or installed beside this package. ProgramError where there is none."""
-    package = Path(__file__).resolve().parent
-    beside = [up / folder / "hyades" for up in package.parents for folder in ("bin", "build/bin")]
+    # No other folders: anybody may write above a package that lies in /tmp.
+    around = Path(__file__).resolve().parents[1]
+    beside = []
+    if around.name == "python":
+        beside.append(around.parent / "build/bin/hyades")
+    if around.name in ("dist-packages", "site-packages"):
+        beside.append(around.parents[2] / "bin/hyades")
     named = program or os.environ.get("HYADES")
     if named:
         found = shutil.which(os.fspath(named))
@@ -113,8 +118,10 @@ def check(job: Job | PathLike, *, program: PathLike | None = None) -> str:
         return run_program(["check", str(path), "--no-probe"], program)
 
 
-def files_of(path: PathLike, program: PathLike | None = None) -> list[dict[str, Any]]:
+def files_of(path: PathLike, program: PathLike | None = None, *, made: PathLike | None = None) -> list[dict[str, Any]]:
     """The files that a job is read from: `path` (relative to its folder), `sha256` and `size`; the
-    job itself comes first."""
-    listed: list[dict[str, Any]] = json.loads(run_program(["check", os.fspath(path), "--files"], program))
+    job itself comes first. Those that are made of scenes of other tools, and lie on no disk, are
+    written into the folder `made`, each under its `sha256`."""
+    written = [] if made is None else ["--made", os.fspath(made)]
+    listed: list[dict[str, Any]] = json.loads(run_program(["check", os.fspath(path), "--files", *written], program))
     return listed

@@ -152,6 +152,24 @@ class WholeFarm(unittest.TestCase):
             self.farm.submit(path, program=self.folder / "none")
         self.farm.submit(scene(), program=self.folder / "none")
 
+    def test_scenes_of_other_tools_travel_as_what_is_made_of_them(self) -> None:
+        (self.folder / "tent.mtl").write_text("newmtl cloth\nKd 0.8 0.2 0.1\n")
+        (self.folder / "tent.obj").write_text("mtllib tent.mtl\nv -1 0 0\nv 1 0 0\nv 0 2 0\nusemtl cloth\nf 1 2 3\n")
+        (self.folder / "three.lua").write_text(
+            "local list = {} for i = 1, 100 do list[i] = {at = {i / 50 - 1, 0, 0}, scale = 0.01} end\n"
+            "return {name = 'three', film = {size = {32, 32}}, sampling = {samples = 16}, environment = {color = 1},\n"
+            "  groups = {g = {objects = {b = {shape = 'sphere'}}}}, outputs = {{file = 'three.exr'}},\n"
+            "  objects = {all = {instance = 'g', places = places(list)}}}\n"
+        )
+        self.process.worker()
+        job = scene(frames="1")
+        job.objects["tent"] = objects.ObjScene(obj=self.folder / "tent.obj")
+        for what in (job, self.folder / "three.lua"):
+            with self.subTest(what=str(what)):
+                submitted = self.farm.submit(what)
+                self.assertEqual(self.farm.wait(submitted).state, "done")
+                self.assert_same_as_here(what, self.farm.fetch(submitted, self.folder / "there"))
+
 
 class Guarded(unittest.TestCase):
     def test_token_and_tls(self) -> None:

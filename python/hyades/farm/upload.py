@@ -53,17 +53,18 @@ def packed(job: Job | PathLike, program: PathLike | None) -> Iterator[Package]:
     """A job with all its files, while the block lasts. Where files name others (include, scenes of
     other tools, ...) the program is asked which."""
     if not isinstance(job, Job):
-        yield Package("", _listed(Path(job), program))
+        with tempfile.TemporaryDirectory() as made:
+            yield Package("", _listed(Path(job), program, Path(made)))
         return
     name = f"{job.name or 'job'}.yaml"
     document = job.document()
     if _names_all_files(job, document):
         yield Package(name, list(_own_files(name, document)), document)
         return
-    with tempfile.TemporaryDirectory() as folder:
+    with tempfile.TemporaryDirectory() as folder, tempfile.TemporaryDirectory() as made:
         document = job.document(folder)
         try:
-            files = _listed(document.write(Path(folder) / name), program)
+            files = _listed(document.write(Path(folder) / name), program, Path(made))
         except JobError as error:
             error.source = document.text.source_of(error.line)
             raise
@@ -207,15 +208,12 @@ def _file(name: str, content: bytes | Path) -> JobFile:
         return JobFile(name, content, digest, data.tell())
 
 
-def _listed(path: Path, program: PathLike | None) -> list[JobFile]:
-    """What the program reads of a job."""
+def _listed(path: Path, program: PathLike | None, made: Path) -> list[JobFile]:
+    """What the program reads of a job, or of a scene of another tool; what it makes of scenes comes into `made`."""
     files = []
-    for row in files_of(path, program):
-        content = path.parent / row["path"]
+    for row in files_of(path, program, made=made):
+        content = made / row["sha256"]
         if not content.is_file():
-            raise HyadesError(
-                f"{row['path']} is made while the job is read: 'hyades submit' brings scenes of other tools, "
-                "or 'hyades import' makes a job of one"
-            )
+            content = path.parent / row["path"]
         files.append(JobFile(row["path"], content, row["sha256"], row["size"]))
     return files
