@@ -48,9 +48,11 @@ Result<std::string> find_blender() {
 Result<std::string> find_script() {
   const std::string here = core::program_folder();
   const char* named = std::getenv("HYADES_BLENDER_ADDON");
-  for (const std::string& folder :
-       {std::string(named != nullptr ? named : ""), here + "../../share/hyades/blender",
-        here + "../share/hyades/blender", here + "../../blender"}) {
+  // Anybody may write above a program that was unpacked in /tmp.
+  std::string beside;
+  if (here.ends_with("/libexec/hyades/")) beside = here + "../../share/hyades/blender";
+  if (here.ends_with("/build/bin/")) beside = here + "../../blender";
+  for (const std::string& folder : {std::string(named != nullptr ? named : ""), beside}) {
     const std::string script = folder + "/hyades_render/export_command.py";
     std::error_code none;
     if (!folder.empty() && fs::is_regular_file(script, none)) return script;

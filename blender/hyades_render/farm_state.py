@@ -6,9 +6,12 @@ from typing import Any
 
 import bpy
 import bpy.utils.previews
+from hyades.printable import printable_lines
 
 from . import preferences
 from .farm_watch import FarmWatch, Task
+
+_MOST_WHOLE = 2**31 - 1
 
 _EVERY = 0.5  # seconds
 
@@ -103,12 +106,18 @@ def _take_jobs(seen: Any) -> None:
     while len(rows) < len(seen.jobs):
         rows.add()
     for row, job in zip(rows, seen.jobs):
-        row.job_id, row.name, row.state, row.share = str(job.id), job.name, job.state, job.share
-        row.frames, row.frames_done, row.frames_failed = job.frames, job.frames_done, job.frames_failed
-        row.seconds_left, row.reason = job.seconds_left, job.reason
+        # A coordinator may say anything, Blender's properties take no more than this.
+        row.job_id, row.share = str(job.id), job.share
+        row.name, row.state, row.reason = (printable_lines(text)[:200] for text in (job.name, job.state, job.reason))
+        row.frames, row.frames_done, row.frames_failed, row.seconds_left = (
+            max(-_MOST_WHOLE, min(number, _MOST_WHOLE))
+            for number in (job.frames, job.frames_done, job.frames_failed, job.seconds_left)
+        )
         row.noise = -1.0 if job.noise is None else job.noise
     if _previews is None or bpy.app.background:
         return
+    for gone in _shown.keys() - seen.thumbnails.keys():
+        del _shown[gone], _previews[str(gone)]
     for job, thumbnail in seen.thumbnails.items():
         if _shown.get(job) == thumbnail.samples:
             continue

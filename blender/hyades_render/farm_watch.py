@@ -15,6 +15,7 @@ from hyades.farm.states import JobState
 MOST_JOBS = 50
 _EVERY = 2.0  # seconds between two looks
 _THUMBNAIL = 96  # pixels across
+_MOST_BYTES = 1 << 20  # of a thumbnail as it is read: the coordinator may send another than was asked for
 
 
 @dataclass(frozen=True)
@@ -73,7 +74,7 @@ class FarmWatch:
         if self._closed or job.preview_frame is None or (before and before.samples == job.samples_done):
             return before
         try:
-            film = self._farm.film(job, job.preview_frame, width=_THUMBNAIL)
+            film = self._farm.film(job, job.preview_frame, width=_THUMBNAIL, most_bytes=_MOST_BYTES)
         except (hyades.HyadesError, OSError, ValueError):
             return before  # the frame may be between its film and its file
         return Thumbnail(job.samples_done, _display(film.array))

@@ -23,7 +23,7 @@ def add_volume(context: Context, object: Any, matrix: Any) -> None:
     data, where = object.data, f"object '{object.name}'"
     path = _file(context, data)
     if path is None:
-        context.complain(where, f"the file {data.filepath or '(none)'} is not there")
+        context.complain(where, f"there is no file {data.filepath or '(none)'}, expected .vdb or .nvdb")
         return
     slot = object.material_slots[0].material if len(object.material_slots) else None
     medium = _medium(context, slot, path)
@@ -40,7 +40,8 @@ def _file(context: Context, data: Any) -> Optional[str]:
     import bpy
 
     path = data.grids.frame_filepath if data.is_sequence else bpy.path.abspath(data.filepath, library=data.library)
-    return os.path.abspath(path) if path and os.path.exists(path) else None
+    is_one = path and path.endswith((".vdb", ".nvdb")) and os.path.isfile(path)  # nobody's other files go to a farm
+    return os.path.abspath(path) if is_one else None
 
 
 def _medium(context: Context, material: Any, path: str) -> Optional[media.Medium]:
