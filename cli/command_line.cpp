@@ -92,8 +92,15 @@ std::optional<int> parse_command_line(CLI::App& app, int argc, char** argv, int 
   return std::nullopt;
 }
 
-void print_error(const core::Error& error) {
-  std::fprintf(stderr, "%s\n", core::printable_lines(error.message).c_str());
+void print_error(const core::Error& error, const std::string& path) {
+  std::string text = error.message;
+  const std::string shown = core::printable(path);
+  if (shown != path) {
+    for (size_t at = 0; (at = text.find(path, at)) != std::string::npos; at += shown.size()) {
+      text.replace(at, path.size(), shown);
+    }
+  }
+  std::fprintf(stderr, "%s\n", core::printable_lines(text).c_str());
 }
 
 }  // namespace hyades::cli

@@ -21,6 +21,7 @@ std::optional<int> parse_command_line(CLI::App& app, int argc, char** argv,
                                       int wrong = kExitRefused);
 
 /// A line on standard error for each line of `error`, which may tell what a stranger's file says.
-void print_error(const core::Error& error);
+/// `path`, which it may name, stays in one line.
+void print_error(const core::Error& error, const std::string& path = {});
 
 }  // namespace hyades::cli

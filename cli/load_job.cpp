@@ -19,7 +19,7 @@ std::optional<LoadedJob> read_job_file(const std::string& path, Diagnostics& dia
   if (is_blend_file(path)) {
     auto made = BlendJob::make(path, scene.frames);
     if (!made) {
-      print_error(made.error());
+      print_error(made.error(), path);
       return std::nullopt;
     }
     loaded.blend = std::move(*made);
@@ -27,14 +27,14 @@ std::optional<LoadedJob> read_job_file(const std::string& path, Diagnostics& dia
   auto files =
       core::JobFiles::open(loaded.blend ? loaded.blend->path() : path, job_file_options(scene));
   if (!files) {
-    print_error(files.error());
+    print_error(files.error(), path);
     return std::nullopt;
   }
   loaded.files = std::move(*files);
   core::AssetResolver& door = loaded.files->files();
   const auto text = door.open(loaded.files->document());
   if (!text) {
-    print_error(text.error());
+    print_error(text.error(), path);
     return std::nullopt;
   }
   loaded.assets = std::make_unique<core::RecordingResolver>(door);

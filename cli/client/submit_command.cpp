@@ -203,7 +203,7 @@ int submit_command(int argc, char** argv) {
   const auto package = farm::package_job(door.document(), options.path, door.files());
   print_notes(door);
   if (!package) {
-    print_error(package.error());
+    print_error(package.error(), options.path);
     return kBadArguments;
   }
   const auto request = make_request(*package, options);
