@@ -41,7 +41,7 @@ const GalleryJob kJobs[] = {{"quickstart", 320, 144, 10, 0.1},
                             {"gloss", 128, 64, 10, 0.06},
                             {"textured", 64, 32, 10, 0.1},
                             {"textured-gloss", 320, 160, 10, 0.12},
-                            {"leaves", 96, 48, 10, 0.01},
+                            {"leaves", 64, 32, 10, 0.01},
                             {"island", 64, 32, 8, 0.015},
                             {"lanterns", 64, 32, 6, 0.1},
                             {"panorama", 192, 96, 6, 0.1},
@@ -49,8 +49,8 @@ const GalleryJob kJobs[] = {{"quickstart", 320, 144, 10, 0.1},
                             {"materials", 480, 240, 64, 0.1},
                             {"media", 64, 32, 64, 0.1},
                             {"god-rays", 224, 112, 10, 0.1},
-                            {"cloud", 400, 200, 32, 0.1},
-                            {"sky-shell", 224, 112, 10, 0.06}};
+                            {"cloud", 64, 32, 32, 0.1},
+                            {"sky-shell", 48, 24, 10, 0.06}};
 
 YamlScene small(const GalleryJob& job, const std::string& integrator, int samples) {
   const std::string folder = std::string("jobs/") + job.name;
