@@ -79,7 +79,7 @@ void note_share(const RenderOptions& options, const coordinator::Progress& progr
 }
 
 /// Why the run ended before its time, and what helps.
-void print_error(const RenderOptions& options, const FilmRoom& room, const std::string& error) {
+void print_failure(const RenderOptions& options, const FilmRoom& room, const std::string& error) {
   std::fprintf(stderr, "%s\n", error.c_str());
   if (!options.keep_work) return;
   std::fprintf(stderr,
@@ -97,7 +97,7 @@ int report(const RenderOptions& options, const FilmRoom& room, const JobFrames& 
     std::fprintf(stderr, "frame %d failed: %s\n", failure.frame, failure.reason.c_str());
   }
   if (!outcome.error.empty()) {
-    print_error(options, room, outcome.error);
+    print_failure(options, room, outcome.error);
     return 1;
   }
   if (!outcome.complete) {
