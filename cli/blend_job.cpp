@@ -2,7 +2,6 @@
 
 #include <stdlib.h>
 
-#include <cstdio>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -11,7 +10,9 @@
 #include <sstream>
 #include <system_error>
 #include <utility>
+#include <vector>
 
+#include "cli/scene_options.h"
 #include "core/base/child_process.h"
 #include "core/base/machine.h"
 #include "core/base/printable.h"
@@ -25,8 +26,6 @@ using core::Result;
 namespace {
 
 namespace fs = std::filesystem;
-
-constexpr size_t kMostTold = 40;
 
 /// Blender's path; an error where it is not here.
 Result<std::string> find_blender() {
@@ -87,13 +86,11 @@ std::string why_of(const std::string& printed) {
   return "Blender cannot read it: " + core::printable(line);
 }
 
-void print_notes(const std::string& text) {
-  std::istringstream lines(text);
-  size_t count = 0;
-  for (std::string line; std::getline(lines, line); ++count) {
-    if (count < kMostTold) std::fprintf(stderr, "%s\n", core::printable(line).c_str());
-  }
-  if (count > kMostTold) std::fprintf(stderr, "and %zu more such notes\n", count - kMostTold);
+std::vector<std::string> lines_of(const std::string& path) {
+  std::ifstream file(path);
+  std::vector<std::string> lines;
+  for (std::string line; std::getline(file, line);) lines.push_back(line);
+  return lines;
 }
 
 }  // namespace
@@ -127,7 +124,7 @@ Result<std::unique_ptr<BlendJob>> BlendJob::make(const std::string& path,
   if (!fs::exists(job->path(), none)) {
     return Error{path + ": " + (done ? "Blender made no job of it" : why_of(done.error().message))};
   }
-  print_notes(text_of(*folder + "/notes.txt"));
+  print_notes(lines_of(*folder + "/notes.txt"));
   return job;
 }
 

@@ -39,7 +39,7 @@ std::optional<LoadedJob> read_job_file(const std::string& path, Diagnostics& dia
   }
   loaded.assets = std::make_unique<core::RecordingResolver>(door);
   loaded.job = core::parse_job({text->chars(), text->size()}, path, *loaded.assets, diagnostics);
-  print_notes(*loaded.files);
+  print_notes(loaded.files->notes());
   return loaded;
 }
 

@@ -67,8 +67,7 @@ core::JobFileOptions job_file_options(const SceneOptions& options) {
       script_settings(options.set)};
 }
 
-void print_notes(const core::JobFiles& files) {
-  const std::vector<std::string> notes = files.notes();
+void print_notes(const std::vector<std::string>& notes) {
   for (size_t i = 0; i < notes.size() && i < kMostNotes; ++i) {
     std::fprintf(stderr, "%s\n", core::printable(notes[i]).c_str());
   }

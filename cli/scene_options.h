@@ -33,7 +33,8 @@ core::ScriptSettings script_settings(const std::vector<std::string>& set);
 
 core::JobFileOptions job_file_options(const SceneOptions& options);
 
-/// What was left out of scenes and which pictures are missing, on standard error.
-void print_notes(const core::JobFiles& files);
+/// Lines about what was left out of scenes and which pictures are missing, the first 40 of them, on
+/// standard error.
+void print_notes(const std::vector<std::string>& notes);
 
 }  // namespace hyades::cli

@@ -201,7 +201,7 @@ int submit_command(int argc, char** argv) {
   if (!files) return app.report({kBadArguments, files.error().message});
   core::JobFiles& door = **files;
   const auto package = farm::package_job(door.document(), options.path, door.files());
-  print_notes(door);
+  print_notes(door.notes());
   if (!package) {
     print_error(package.error(), options.path);
     return kBadArguments;

@@ -16,11 +16,11 @@ namespace hyades::core::lua {
 namespace {
 
 using Kind = YamlNode::Kind;
+using Nodes = std::vector<const YamlPtr*>;  ///< of one path, by frame
 
 /// What takes about as much memory as one value: bytes of a text, items that are pointed to.
 constexpr uint64_t kBytesPerValue = 128;
 constexpr uint64_t kItemsPerValue = 4;
-using Nodes = std::vector<const YamlPtr*>;  ///< of one path, by frame
 
 bool is_number(const YamlNode& node) {
   double number = 0.0;
@@ -167,8 +167,6 @@ class Joiner {
   Error error_;
 };
 
-}  // namespace
-
 /// Values of the memory that a text takes.
 uint64_t values_of(const std::string& text) { return text.size() / kBytesPerValue; }
 
@@ -179,6 +177,8 @@ uint64_t values_of(const YamlNode& node) {
   for (const YamlEntry& entry : node.map) values += values_of(entry.key) + values_of(*entry.value);
   return values;
 }
+
+}  // namespace
 
 YamlPtr share_equal(const YamlPtr& first, const YamlPtr& tree, uint64_t& different) {
   const bool alike = first->kind == tree->kind && first->list.size() == tree->list.size() &&

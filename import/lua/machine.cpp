@@ -117,7 +117,7 @@ void Machine::look() {
 
 void Machine::need(size_t bytes) {
   if (used_ <= limits_.memory && bytes <= limits_.memory - used_) return;
-  stop(fmt::format("the script takes more than {} of memory", format_bytes(limits_.memory)));
+  stop(too_much_memory());
 }
 
 bool Machine::is_spent() const {
@@ -145,6 +145,10 @@ std::string Machine::too_many_steps() const {
 std::string Machine::too_late() const {
   return fmt::format("the script takes more than {} of processor time",
                      format_duration(limits_.seconds));
+}
+
+std::string Machine::too_much_memory() const {
+  return fmt::format("the script takes more than {} of memory", format_bytes(limits_.memory));
 }
 
 void Machine::stop(const std::string& why) {
@@ -184,7 +188,7 @@ void* Machine::take(void* pointer, size_t old_size, size_t new_size) {
     return nullptr;
   }
   if (after > before && used_ - before + after > limits_.memory) {
-    refuse(fmt::format("the script takes more than {} of memory", format_bytes(limits_.memory)));
+    refuse(too_much_memory());
     return nullptr;
   }
   void* const block = std::realloc(fresh ? nullptr : static_cast<Header*>(pointer) - 1, after);

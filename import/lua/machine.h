@@ -55,10 +55,12 @@ class Machine {
   /// that is too much.
   void spend(uint64_t steps);
 
-  /// The same for what may take seconds and counts as less.
+  /// Looks at all limits now, before or while a function of ours does what may take seconds and
+  /// counts as few steps; raises Lua's error, which nobody catches, where one is met.
   void look();
 
-  /// The same for `bytes` that a function of ours is about to take beside what the script holds.
+  /// Raises Lua's error, which nobody catches, where the script has no room for `bytes` more, which
+  /// a function of ours is about to take by itself.
   void need(size_t bytes);
 
   /// Whether a limit was met: then every protected call fails.
@@ -89,6 +91,7 @@ class Machine {
   void refuse(std::string why);
   std::string too_many_steps() const;
   std::string too_late() const;
+  std::string too_much_memory() const;
   bool is_spent() const;
   bool is_late() const;
   [[noreturn]] void stop(const std::string& why);
