@@ -59,7 +59,8 @@ class CoordinatorLink {
   /// Messages, and bytes of these, that the owner has before it at once (the last may be larger).
   static constexpr size_t kMostUnheard = 64;
   static constexpr size_t kMostUnheardBytes = size_t{1} << 20U;
-  /// The same of what is queued, beyond which nothing more is read that could be answered.
+  /// Messages to the coordinator, and bytes of these, that wait to be sent: beyond them nothing
+  /// more is read, for it could ask for further ones.
   static constexpr size_t kMostQueued = 10'000;
   static constexpr size_t kMostQueuedBytes = size_t{256} << 20U;
 

@@ -17,7 +17,8 @@ bool is_printable(std::string_view text);
 /// that is not UTF-8: for terminals, logs and messages of texts that others have written.
 std::string printable(std::string_view text);
 
-/// The same, but for the ends of lines (\n), which stay.
+/// `text` of several lines with '?' in place of what is not is_printable(); ends of lines (\n)
+/// stay.
 std::string printable_lines(std::string_view text);
 
 }  // namespace hyades::core
