@@ -169,9 +169,9 @@ void check_groups(ReadContext& context) {
   }
 }
 
-/// Whether whoever names a file may.
-Status may_be_named(const FileUse& use, AssetResolver& assets) {
-  return use.script.empty() ? Status() : assets.may_name(use.script, use.reference);
+/// Whether a script (empty: the job itself, which may name every file) may name a file.
+Status may_name(const std::string& script, const std::string& reference, AssetResolver& assets) {
+  return script.empty() ? Status() : assets.may_name(script, reference);
 }
 
 /// Opens a file, or all files of a UDIM pattern or a sequence of meshes, so that whoever records
@@ -198,7 +198,7 @@ void check_files(ReadContext& context, AssetResolver& assets) {
   std::set<std::pair<std::string, std::string>> good;  // of scripts and files
   for (const FileUse& use : context.files) {
     if (good.contains({use.script, use.reference})) continue;
-    const Status named = may_be_named(use, assets);
+    const Status named = may_name(use.script, use.reference, assets);
     const Status opened = named ? open_all(context.job, use, assets) : named;
     if (opened) {
       good.insert({use.script, use.reference});
@@ -216,12 +216,12 @@ void find_color_files(ReadContext& context, AssetResolver& assets) {
   const auto use =
       std::find_if(context.files.begin(), context.files.end(),
                    [&](const FileUse& file) { return file.reference == color.config; });
-  if (use == context.files.end() || !may_be_named(*use, assets)) return;
+  if (use == context.files.end() || !may_name(use->script, color.config, assets)) return;
   const auto config = assets.open(color.config);
   if (!config) return;  // complained about already
   for (const std::string& file : ocio_file_candidates({config->chars(), config->size()})) {
     const std::string reference = resolve_reference(file, color.config);
-    if (!may_be_named({reference, {}, {}, false, use->script}, assets)) continue;
+    if (!may_name(use->script, reference, assets)) continue;
     if (assets.open(file, color.config)) color.files.push_back(reference);
   }
 }
