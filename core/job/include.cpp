@@ -38,11 +38,11 @@ class Loader {
     // What parts of a script say is said by the script, whose folder its files are named from.
     std::set<std::string> places = MadeLines(text, shown).other_files();
     if (!open_.empty()) {
-      for (const std::string& part : places) tree.shown[part] = reference;
+      for (const std::string& part : places) tree.origins.included[part] = reference;
     }
     places.insert(shown);
     if (!script.empty()) {
-      for (const std::string& place : places) tree.scripts[place] = script;
+      for (const std::string& place : places) tree.origins.scripts[place] = script;
     }
     if (open_.empty()) {
       fps_ = fps_of(*own);
@@ -68,9 +68,8 @@ class Loader {
         root,
         [&](const SceneDocument& wanted, const YamlNode& name, const std::string& what) {
           const SourceLocation where = name.where;
-          const auto included = tree.shown.find(where.file);
-          const bool own = included == tree.shown.end();
-          const std::string from = own ? main_reference() : included->second;
+          const std::string included = tree.origins.file_at(where);
+          const std::string from = included.empty() ? main_reference() : included;
           if (seen_.contains(resolve_reference(reference_of(wanted), from))) {
             diagnostics_.add(where, what + ": another object brings this scene under the name '" +
                                         wanted.prefix + "' too, expected names that differ");
@@ -101,12 +100,6 @@ class Loader {
       add(value);
     }
     return merged;
-  }
-
-  /// The script that says what stands at `where`; empty: the job does.
-  std::string script_at(const SourceLocation& where) const {
-    const auto found = tree.scripts.find(where.file);
-    return found == tree.scripts.end() ? std::string() : found->second;
   }
 
   struct Opened {
@@ -145,7 +138,7 @@ class Loader {
     }
     const auto scene = document_of(reference);
     const std::string named = scene ? scene->scene : reference;
-    std::string script = script_at(name.where);
+    std::string script = tree.origins.script_at(name.where);
     if (!script.empty()) {
       if (const auto may = assets_.may_name(script, named); !may) {
         diagnostics_.add(name.where, what + ": " + may.error().message);
@@ -167,7 +160,7 @@ class Loader {
     // Complaints about what importers make are complaints about the scene.
     const std::string shown = (main_.parent_path() / named).lexically_normal().string();
     tree.includes.push_back(reference);
-    tree.shown[shown] = reference;
+    tree.origins.included[shown] = reference;
     return Opened{reference, shown, std::move(script), std::move(*bytes)};
   }
 

@@ -1,10 +1,10 @@
 #pragma once
 
-#include <map>
 #include <string>
 #include <vector>
 
 #include "core/base/assets.h"
+#include "core/job/origins.h"
 #include "core/job/source.h"
 #include "core/job/yaml_tree.h"
 
@@ -12,12 +12,9 @@ namespace hyades::core {
 
 /// A job's YAML with everything that it includes joined to one map.
 struct JobTree {
-  YamlPtr root;                              ///< null where a file could not be read at all
-  std::vector<std::string> includes;         ///< relative to the job's folder, in order of reading
-  std::map<std::string, std::string> shown;  ///< name in complaints -> name in `includes`
-  /// Name in complaints of what a script says or includes -> the script, which may name files of
-  /// its own folder only.
-  std::map<std::string, std::string> scripts;
+  YamlPtr root;                       ///< null where a file could not be read at all
+  std::vector<std::string> includes;  ///< relative to the job's folder, in order of reading
+  Origins origins;                    ///< of what the map says
 };
 
 /// Reads `text` and the files that its `include:` names (a name or a list of names, relative to the

@@ -209,8 +209,8 @@ void MapReader::file(std::string_view key, std::string& target) {
   if (name.empty()) return;
   const SourceLocation where = where_of(key);
   target = context_.job_relative(name, where);
-  context_.files.push_back(
-      {target, where, fmt::format("{} of {}", key, what_), false, context_.script_at(where)});
+  context_.files.push_back({target, where, fmt::format("{} of {}", key, what_), false,
+                            context_.origins.script_at(where)});
 }
 
 void MapReader::mesh_file(std::string_view key, std::string& target) {

@@ -19,8 +19,7 @@ Job parse_job(const std::string& text, const std::string& file_name, AssetResolv
   if (tree.root == nullptr) return job;
   job.includes = tree.includes;
   ReadContext context(job, diagnostics);
-  context.included = tree.shown;
-  context.scripts = tree.scripts;
+  context.origins = tree.origins;
   context.files_missing = !diagnostics.empty();
   MapReader top(context, *tree.root, "", "", "job");
   if (tree.root->kind != YamlNode::Kind::map) return job;

@@ -30,13 +30,7 @@ bool ReadContext::spend(uint64_t nodes, const SourceLocation& where) {
 
 std::string ReadContext::job_relative(const std::string& reference,
                                       const SourceLocation& where) const {
-  const auto found = included.find(where.file);
-  return resolve_reference(reference, found == included.end() ? std::string() : found->second);
-}
-
-std::string ReadContext::script_at(const SourceLocation& where) const {
-  const auto found = scripts.find(where.file);
-  return found == scripts.end() ? std::string() : found->second;
+  return resolve_reference(reference, origins.file_at(where));
 }
 
 }  // namespace hyades::core

@@ -11,6 +11,7 @@
 #include "core/job/fields.h"
 #include "core/job/job.h"
 #include "core/job/key_listing.h"
+#include "core/job/origins.h"
 #include "core/job/source.h"
 #include "core/job/yaml_tree.h"
 
@@ -46,12 +47,10 @@ struct ReadContext {
   std::vector<FileUse> files;
   float exposure = 0.0F;    ///< stops that the camera's exposure adds to every output's
   bool in_shutter = false;  ///< what is read now counts all the while the shutter is open
-  /// Display name of an included file -> its path relative to the job's folder.
-  std::map<std::string, std::string> included;
-  std::map<std::string, std::string> scripts;  ///< JobTree::scripts
-  std::map<std::string, YamlPtr> materials;    ///< as written, `like` followed; for overrides
-  bool files_missing = false;                  ///< files that names may stand in could not be read
-  KeyListing* listing = nullptr;               ///< set: only collect which keys the readers know
+  Origins origins;          ///< of what the job says
+  std::map<std::string, YamlPtr> materials;  ///< as written, `like` followed; for overrides
+  bool files_missing = false;                ///< files that names may stand in could not be read
+  KeyListing* listing = nullptr;             ///< set: only collect which keys the readers know
 
   /// Adds a complaint, once (a node that `like:` or an alias shares is read several times).
   void complain(const SourceLocation& where, const std::string& message);
@@ -62,9 +61,6 @@ struct ReadContext {
 
   /// `reference` as written at `where`, made relative to the job's folder.
   std::string job_relative(const std::string& reference, const SourceLocation& where) const;
-
-  /// The script that says what stands at `where`; empty: the job does.
-  std::string script_at(const SourceLocation& where) const;
 
  private:
   std::set<std::string> complaints_;
