@@ -1,6 +1,5 @@
 #pragma once
 
-#include <algorithm>
 #include <chrono>
 #include <cstdint>
 #include <string>
@@ -8,6 +7,7 @@
 
 #include "core/base/text.h"
 #include "farm/log.h"
+#include "farm/token_bucket.h"
 #include "farm/wire.h"
 #include "worker/event_loop.h"
 #include "worker/state_machine.h"
@@ -15,49 +15,30 @@
 
 namespace hyades::worker {
 
-/// How many lines may be written: many at once, but few in the long run, so that what others can
-/// make a worker say (a coordinator, above all) fills no disk.
-class LogAllowance {
- public:
-  static constexpr uint64_t kAtOnce = 1000;
-  static constexpr Duration kOneMoreEvery = std::chrono::seconds(1);
-
-  /// Whether one more may be written `now`; those that may not are counted.
-  bool take(TimePoint now) {
-    const auto more = static_cast<uint64_t>((now - counted_) / kOneMoreEvery);
-    if (more > 0) counted_ = now;
-    left_ = std::min(kAtOnce, left_ + more);
-    if (left_ == 0) {
-      ++withheld_;
-      return false;
-    }
-    --left_;
-    return true;
-  }
-  /// How many were not since the last call.
-  uint64_t take_withheld() { return std::exchange(withheld_, 0); }
-
- private:
-  uint64_t left_ = kAtOnce;
-  uint64_t withheld_ = 0;
-  TimePoint counted_;
-};
-
-/// The worker's log: lines of bounded length, and no more of those that tell of its work than
-/// LogAllowance has it. For the loop's thread.
+/// The worker's log: lines of bounded length, and of those that tell of its work many at once but
+/// few in the long run, so that what others can make a worker say (a coordinator, above all) fills
+/// no disk. For the loop's thread.
 class WorkerLog {
  public:
+  static constexpr int kLinesAtOnce = 1000;
+  static constexpr int kLinesPerSecond = 1;
+
   explicit WorkerLog(std::string name) : name_(std::move(name)) {}
 
   /// The worker's name, as the coordinator has it.
   void rename(const std::string& name) { name_ = name; }
 
-  void note(farm::LogLevel level, const std::string& text, const farm::LogFields& about = {}) {
+  /// Writes a line, or counts it as left out, which the next one that is written tells.
+  void note(farm::LogLevel level, const std::string& text, const farm::LogFields& about = {},
+            TimePoint now = std::chrono::steady_clock::now()) {
     if (level == farm::LogLevel::info || level == farm::LogLevel::warning) {
-      if (!allowance_.take(std::chrono::steady_clock::now())) return;
-      if (const uint64_t withheld = allowance_.take_withheld(); withheld > 0) {
+      if (!lines_.take(now)) {
+        ++left_out_;
+        return;
+      }
+      if (const uint64_t lines = std::exchange(left_out_, 0); lines > 0) {
         write(farm::LogLevel::warning,
-              "too much to tell: " + core::counted(withheld, "line") + " left out", {});
+              "too much to tell: " + core::counted(lines, "line") + " left out", {});
       }
     }
     write(level, farm::wire_text(text), about);
@@ -71,7 +52,8 @@ class WorkerLog {
   }
 
   std::string name_;
-  LogAllowance allowance_;
+  farm::TokenBucket lines_{kLinesAtOnce, kLinesPerSecond, std::chrono::steady_clock::now()};
+  uint64_t left_out_ = 0;
 };
 
 /// What the parts of a worker share.

@@ -17,10 +17,10 @@
 
 #include "coordinator/access/caller.h"
 #include "coordinator/access/rotating_log.h"
-#include "coordinator/access/token_bucket.h"
 #include "core/base/descriptor.h"
 #include "core/base/mutex.h"
 #include "core/base/result.h"
+#include "farm/token_bucket.h"
 #include "hyades/v1/admin.pb.h"
 
 namespace hyades::coordinator {
@@ -89,7 +89,7 @@ class AuditLog {
   struct Trail;
   /// Bounds how many entries of a neighbourhood or a token are noted one by one.
   struct RateLimit {
-    TokenBucket bucket;
+    farm::TokenBucket bucket;
     Trail* trail = nullptr;
     v1::AuditEntry held{};  ///< with `times` of those that were not noted
   };

@@ -187,7 +187,7 @@ grpc::Status Authority::refuse_unknown(const std::string& address) {
     if (wrong_.size() >= kMostNeighbourhoods) whose = "others";
   }
   const auto [found, fresh] =
-      wrong_.try_emplace(whose, TokenBucket(kWrongAtOnce, kWrongPerSecond, now));
+      wrong_.try_emplace(whose, farm::TokenBucket(kWrongAtOnce, kWrongPerSecond, now));
   if (!found->second.take(now)) {
     return farm::retry_later(grpc::StatusCode::RESOURCE_EXHAUSTED,
                              "too many tokens from this address were none of this coordinator's",

@@ -15,11 +15,11 @@
 
 #include "coordinator/access/audit_log.h"
 #include "coordinator/access/caller.h"
-#include "coordinator/access/token_bucket.h"
 #include "coordinator/access/worker_credential.h"
 #include "coordinator/job_store/job_store.h"
 #include "core/base/mutex.h"
 #include "core/base/result.h"
+#include "farm/token_bucket.h"
 
 namespace hyades::coordinator {
 
@@ -153,7 +153,7 @@ class Authority {
 
   core::Mutex wrong_mutex_;
   /// Of tokens that were none, by neighbourhood_of() an address.
-  std::map<std::string, TokenBucket> wrong_ HYADES_GUARDED_BY(wrong_mutex_);
+  std::map<std::string, farm::TokenBucket> wrong_ HYADES_GUARDED_BY(wrong_mutex_);
 
   core::Mutex streams_mutex_;  ///< taken before mutex_
   std::map<uint64_t, OpenStream> streams_ HYADES_GUARDED_BY(streams_mutex_);

@@ -10,12 +10,12 @@
 #include <unordered_map>
 #include <vector>
 
-#include "coordinator/access/token_bucket.h"
 #include "coordinator/services/listening.h"
 #include "coordinator/services/stranger_queue.h"
 #include "core/base/descriptor.h"
 #include "core/base/mutex.h"
 #include "core/base/result.h"
+#include "farm/token_bucket.h"
 
 namespace hyades::coordinator {
 
@@ -98,7 +98,7 @@ class ConnectionGate {
     std::optional<uint32_t> beginning{};  ///< of what it sends (take_beginning())
     uint32_t bound = 0;                   ///< of what is let in of a stranger
     int calls = 0;                        ///< in a row without a token that is one
-    std::optional<TokenBucket> broken{};  ///< calls that may be broken off
+    std::optional<farm::TokenBucket> broken{};  ///< calls that may be broken off
     int open_calls = 0;
   };
 

@@ -147,25 +147,28 @@ TEST(StateMachineBounds, AsksForNothingWhileTooManySmallFilmsWait) {
   EXPECT_LE(world.machine->unacknowledged(), 5U);
 }
 
-TEST(LogAllowance, LetsManyLinesThroughAtOnceAndFewInTheLongRun) {
-  LogAllowance allowance;
-  TimePoint now{std::chrono::hours(1)};
+TEST(WorkerLog, HasManyLinesAtOnceAndFewInTheLongRun) {
+  WorkerLog log("w");
+  TimePoint now = std::chrono::steady_clock::now() + std::chrono::hours(1);
   const auto written = [&](int tries) {
-    uint64_t count = 0;
-    for (int i = 0; i < tries; ++i) count += allowance.take(now) ? 1 : 0;
-    return count;
+    testing::internal::CaptureStderr();
+    for (int i = 0; i < tries; ++i) log.note(farm::LogLevel::info, "said", {}, now);
+    return testing::internal::GetCapturedStderr();
   };
-  EXPECT_EQ(written(5000), LogAllowance::kAtOnce);
-  EXPECT_EQ(allowance.take_withheld(), 5000 - LogAllowance::kAtOnce);
-  EXPECT_EQ(allowance.take_withheld(), 0U);
-  uint64_t later = 0;
+  const auto lines = [](const std::string& text) {
+    return std::count(text.begin(), text.end(), '\n');
+  };
+  EXPECT_EQ(lines(written(5000)), WorkerLog::kLinesAtOnce);
+  now += std::chrono::seconds(1);
+  const std::string next = written(10);
+  EXPECT_NE(next.find("too much to tell: 4000 lines left out"), std::string::npos) << next;
+  EXPECT_EQ(lines(next), 2);
+  int64_t later = 0;
   for (int i = 0; i < 1000; ++i) {
     now += std::chrono::milliseconds(100);
-    later += written(10);
+    later += lines(written(10));
   }
-  EXPECT_EQ(later, 100U) << "one a second";
-  now += std::chrono::hours(5);
-  EXPECT_EQ(written(5000), LogAllowance::kAtOnce);
+  EXPECT_NEAR(static_cast<double>(later), 200, 4) << "one a second, and what it left out";
 }
 
 }  // namespace

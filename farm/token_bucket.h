@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <chrono>
 
-namespace hyades::coordinator {
+namespace hyades::farm {
 
 /// How often something may happen: `burst` times at once, and `per_second` times a second from then
 /// on.
@@ -34,4 +34,4 @@ class TokenBucket {
   TimePoint asked_;
 };
 
-}  // namespace hyades::coordinator
+}  // namespace hyades::farm
