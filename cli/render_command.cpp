@@ -80,7 +80,7 @@ void note_share(const RenderOptions& options, const coordinator::Progress& progr
 
 /// Why the run ended before its time, and what helps.
 void print_failure(const RenderOptions& options, const FilmRoom& room, const std::string& error) {
-  std::fprintf(stderr, "%s\n", error.c_str());
+  print_error(core::Error{error});
   if (!options.keep_work) return;
   std::fprintf(stderr,
                "what is done is kept: the same command goes on. Until a frame is written its film "
@@ -94,7 +94,7 @@ int report(const RenderOptions& options, const FilmRoom& room, const JobFrames& 
   const RunTotals totals = frames.totals();
   print_bad_samples(totals, options.path);
   for (const coordinator::FrameFailure& failure : outcome.failures) {
-    std::fprintf(stderr, "frame %d failed: %s\n", failure.frame, failure.reason.c_str());
+    print_error(core::Error{fmt::format("frame {} failed: {}", failure.frame, failure.reason)});
   }
   if (!outcome.error.empty()) {
     print_failure(options, room, outcome.error);
