@@ -1,8 +1,14 @@
 // YAML as lines to look at: numbered, lightly coloured, with complaints below the lines that they are about.
 import { h } from './dom.js';
 
+// What a browser shows at once without standing still, and the longest line that is coloured.
+const MOST_CHARACTERS = 1 << 20;
+const MOST_LINES = 20000;
+const MOST_COLOURED = 2000;
+
 /** Cuts a line into [kind, text] pieces that join to the line; kinds: '', 'key', 'text', 'remark'. */
 export function pieces(line) {
+  if (line.length > MOST_COLOURED) return [['', line]];
   const parts = [];
   let rest = line;
   const lead = /^(\s*(?:- +)*)/.exec(rest)[0];
@@ -39,9 +45,19 @@ export function complaints(message) {
   return list;
 }
 
-/** The text as a list of lines; `found`: complaints about this file. */
+/** The lines of a text that are shown, those of its beginning, and whether there are more. */
+export function shownLines(text) {
+  const lines = text.slice(0, MOST_CHARACTERS).replace(/\r\n?/g, '\n').replace(/\n$/, '').split('\n');
+  return { lines: lines.slice(0, MOST_LINES), more: text.length > MOST_CHARACTERS || lines.length > MOST_LINES };
+}
+
+/** The text as a list of lines, of a very long one the beginning; `found`: complaints about this file. */
 export function yamlLines(text, found = []) {
-  const lines = text.replace(/\r\n?/g, '\n').replace(/\n$/, '').split('\n');
+  const { lines, more } = shownLines(text);
+  const below = found.filter((complaint) => complaint.line > lines.length);
+  const words = ({ text: what, line, column }) =>
+    line > lines.length ? `line ${line}: ${what}` : column > 0 ? `column ${column}: ${what}` : what;
+  const said = (complaint) => h('span', { class: 'complaint', testid: 'complaint', text: words(complaint) });
   return h(
     'ol',
     { class: 'code', tabindex: 0, 'aria-label': 'Document' },
@@ -55,14 +71,9 @@ export function yamlLines(text, found = []) {
           {},
           pieces(line).map(([kind, piece]) => (kind ? h('span', { class: kind, text: piece }) : piece)),
         ),
-        here.map(({ text: words, column }) =>
-          h('span', {
-            class: 'complaint',
-            testid: 'complaint',
-            text: column > 0 ? `column ${column}: ${words}` : words,
-          }),
-        ),
+        here.map(said),
       );
     }),
+    more ? h('li', { class: 'wrong' }, 'The text goes on: too long to be shown whole', below.map(said)) : null,
   );
 }
