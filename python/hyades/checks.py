@@ -6,6 +6,7 @@ import math
 import os
 import re
 from collections.abc import Callable, Mapping, Sequence
+from functools import cache
 from typing import TYPE_CHECKING, Any
 
 from .errors import KeyRefused
@@ -64,11 +65,14 @@ def component(key: Key, value: Any) -> Any:
     return value if is_expression(value) else number(key, value)
 
 
-def several(count: int) -> Callable[[Key, Any], Any]:
+def several(count: int, one: Callable[[Key, Any], Any] = component) -> Callable[[Key, Any], Any]:
     def check(key: Key, value: Any) -> Any:
         if not isinstance(value, Sequence) or isinstance(value, str) or len(value) != count:
             raise refuse(f"{count} numbers")
-        return [component(key, item) for item in value]
+        # Large scenes have a matrix for each of their objects.
+        if key.low is None and key.high is None and set(map(type, value)) == {float} and all(map(math.isfinite, value)):
+            return list(value)
+        return [one(key, item) for item in value]
 
     return check
 
@@ -251,12 +255,15 @@ def focus(key: Key, value: Any) -> Any:
 _CHECKS["number, animated, or an object's name"] = focus
 
 
+@cache
+def _check(takes: str) -> Callable[[Key, Any], Any]:
+    counted = _COUNTED.fullmatch(takes)
+    if counted is None:
+        return _CHECKS[takes]
+    return several(int(counted[1]), whole if counted[2] else number)
+
+
 def checked(key: Key, value: Any) -> Any:
     """`value` as it is kept, or KeyRefused with what was expected."""
     is_file = key.takes in ("file", "mesh file", "files")
-    value = value if is_file else plain(value)
-    counted = _COUNTED.fullmatch(key.takes)
-    if counted is None:
-        return _CHECKS[key.takes](key, value)
-    numbers = several(int(counted[1]))(key, value)
-    return [whole(key, item) if counted[2] else number(key, item) for item in numbers]
+    return _check(key.takes)(key, value if is_file else plain(value))

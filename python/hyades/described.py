@@ -47,10 +47,8 @@ class Key:
             raise AttributeError(f"{type(instance).__name__}.{self.name} has not been said")
         return said.get(self.name, self.default)
 
-    def __set__(self, instance: Any, value: Any) -> None:
-        if value is _UNSET or value is None:
-            instance.__dict__.pop(self.name, None)
-            return
+    def take(self, instance: Any, value: Any) -> None:
+        """Keeps what `instance` says; KeyRefused: the key takes no such value."""
         try:
             instance.__dict__[self.name] = checked(self, value)
         except KeyRefused as error:
@@ -96,12 +94,16 @@ class Described:
         return [n for n, k in self.keys().items() if k.required and n not in self.__dict__]
 
     def __setattr__(self, name: str, value: Any) -> None:
-        known = self.keys()
-        if name not in known:
+        known = self._KEYS
+        described = known.get(name)
+        if described is None:
             close = difflib.get_close_matches(name, known, 1)
             hint = f"; did you mean '{close[0]}'?" if close else f"; it has {', '.join(known)}"
             raise AttributeError(f"{type(self).__name__} has no key '{name}'{hint}")
-        super().__setattr__(name, value)
+        if value is None or value is _UNSET:
+            self.__dict__.pop(name, None)
+        else:
+            described.take(self, value)
 
     def __repr__(self) -> str:
         said = ", ".join(f"{k.name}={value!r}" for k, value in self.said())

@@ -12,11 +12,13 @@ from hyades import Step
 
 TO_JOB = numpy.array([[1, 0, 0, 0], [0, 0, 1, 0], [0, -1, 0, 0], [0, 0, 0, 1]], dtype=float)
 """World of Blender to world of the job, as a matrix for columns."""
+_UNCHANGED = numpy.eye(4)
 
 
 def array(matrix: Any) -> numpy.ndarray:
     """A matrix of Blender as an array (4, 4) of doubles."""
-    return numpy.array([tuple(row) for row in matrix], dtype=float)
+    first, second, third, fourth = matrix
+    return numpy.array(first[:] + second[:] + third[:] + fourth[:]).reshape(4, 4)
 
 
 def placed(matrix: Any) -> numpy.ndarray:
@@ -26,14 +28,12 @@ def placed(matrix: Any) -> numpy.ndarray:
 
 def matrix_step(matrix: numpy.ndarray) -> Step:
     """A step of a transform that is this matrix."""
-    rows = numpy.array(matrix, dtype=float)
-    rows[3] = (0, 0, 0, 1)
-    return Step(matrix=[float(number) for number in rows.reshape(-1)])
+    return Step(matrix=[*matrix[:3].reshape(-1).tolist(), 0.0, 0.0, 0.0, 1.0])
 
 
 def steps(matrix: numpy.ndarray) -> list[Step] | None:
     """The transform that is this matrix, None for one that changes nothing."""
-    return None if numpy.array_equal(matrix, numpy.eye(4)) else [matrix_step(matrix)]
+    return None if (matrix == _UNCHANGED).all() else [matrix_step(matrix)]
 
 
 def numbers(vector: Any) -> list[float]:

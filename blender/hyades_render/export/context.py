@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass
 from typing import Any
 
 import hyades
+
+_NOT_ALLOWED = re.compile("[^A-Za-z0-9_. -]")
 
 
 @dataclass(frozen=True)
@@ -46,7 +49,7 @@ class Context:
 
 def free_name(wanted: str, taken: Any) -> str:
     """A name that the job accepts, like `wanted`, and that `taken` does not hold."""
-    allowed = "".join(c if c.isascii() and (c.isalnum() or c in "_-. ") else "_" for c in wanted).strip(" ")
+    allowed = _NOT_ALLOWED.sub("_", wanted).strip(" ")
     if not allowed or not (allowed[0].isalnum() or allowed[0] == "_"):
         allowed = "_" + allowed
     base = allowed[:90].rstrip(" ")
