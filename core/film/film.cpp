@@ -293,9 +293,8 @@ Status Film::check_ids() const {
 }
 
 Status Film::check_id_room() const {
-  constexpr uint64_t kTimes = 8;
   constexpr const char* kWhat[kIdKinds] = {"object", "material"};
-  const uint64_t most = kTimes * id_room(window_);
+  const uint64_t most = id_room(window_);
   for (size_t kind = 0; kind < kIdKinds; ++kind) {
     const uint64_t memory = ids_[kind].memory();
     if (memory <= most) continue;

@@ -100,8 +100,8 @@ class Film {
   /// Splats are there only where a batch is; no pixel has more ids than samples.
   Status check() const;
 
-  /// Whether the ids take no more memory than those of such a film may: eight times what
-  /// film_memory() counts for them. What films added up say does not depend on their order.
+  /// Whether the ids take no more memory than those of such a film may (id_room(), which
+  /// film_memory() counts). What films added up say does not depend on their order.
   Status check_id_room() const;
 
   /// How many batches each pixel of the window holds, row by row.

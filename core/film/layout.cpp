@@ -165,8 +165,9 @@ uint64_t film_memory(const FilmLayout& layout, const PixelRect& window) {
 }
 
 uint64_t id_room(const PixelRect& window) {
-  constexpr uint64_t kNames = uint64_t{1} << 20U;
-  return static_cast<uint64_t>(window.area()) * 4 * sizeof(IdCount) + kNames;
+  constexpr uint64_t kPerPixel = 8;
+  constexpr uint64_t kNames = uint64_t{4} << 20U;
+  return static_cast<uint64_t>(window.area()) * kPerPixel * sizeof(IdCount) + kNames;
 }
 
 uint64_t film_memory(const FilmLayout& layout, const PixelRect& window, const PixelRect& region) {

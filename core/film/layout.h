@@ -113,9 +113,9 @@ FilmLayout make_film_layout(const LayerSet& layers);
 std::string group_channel(std::string_view name);
 
 /// Bytes that the sums of a film take in memory at most, splats being those of its window's pixels.
-/// Ids of each kind are counted as id_room() says.
+/// Ids of each kind have what id_room() says.
 uint64_t film_memory(const FilmLayout& layout, const PixelRect& window);
-/// Bytes that are kept for the ids of one kind: four of each pixel, and some names.
+/// Bytes that the ids of one kind may take: eight of each pixel on the average, and their names.
 uint64_t id_room(const PixelRect& window);
 /// Bytes that the sums of a film take in memory at most where its splats are those of all of
 /// `region`, which contains the window.
