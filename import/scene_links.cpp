@@ -5,6 +5,8 @@
 #include <filesystem>
 #include <string_view>
 #include <system_error>
+#include <utility>
+#include <vector>
 
 namespace hyades::core {
 
@@ -18,6 +20,25 @@ constexpr std::string_view kUdim = "<UDIM>";
 bool is_inside(const fs::path& path, const fs::path& folder) {
   return std::mismatch(folder.begin(), folder.end(), path.begin(), path.end()).first ==
          folder.end();
+}
+
+/// Adds the ways that `way` has with one more step, which may be a pattern; as written too.
+void add_meant(const fs::path& folder, const fs::path& way, const std::string& step,
+               std::vector<fs::path>& ways) {
+  ways.push_back(way / step);
+  const size_t udim = step.find(kUdim);
+  const size_t first = std::min(udim, step.find('#'));
+  if (first == std::string::npos) return;
+  const size_t after_frame = step.rfind('#') + 1;  // 0: there is none
+  const size_t after_tile = udim == std::string::npos ? 0 : step.rfind(kUdim) + kUdim.size();
+  const std::string_view before = std::string_view(step).substr(0, first);
+  const std::string_view after = std::string_view(step).substr(std::max(after_frame, after_tile));
+  std::error_code failed;
+  fs::directory_iterator entries(folder / way, failed);
+  for (; !failed && entries != fs::directory_iterator(); entries.increment(failed)) {
+    const std::string name = entries->path().filename().string();
+    if (name.starts_with(before) && name.ends_with(after)) ways.push_back(way / name);
+  }
 }
 
 }  // namespace
@@ -44,21 +65,14 @@ Status SceneLinks::check_one(const std::string& base, const std::string& file) c
 Status SceneLinks::check(const std::string& scene, const std::string& file) const {
   if (!looked_at_) return {};
   const std::string base = fs::path(scene).parent_path().string();
-  const fs::path whole(file);
-  const std::string name = whole.filename().string();
-  const size_t udim = name.find(kUdim);
-  const size_t first = std::min(udim, name.find('#'));
-  if (first == std::string::npos) return check_one(base, file);
-  const size_t last = udim != std::string::npos ? udim + kUdim.size() : name.rfind('#') + 1;
-  const std::string_view before = std::string_view(name).substr(0, first);
-  const std::string_view after = std::string_view(name).substr(last);
-  const fs::path parent = whole.parent_path();
-  std::error_code failed;
-  fs::directory_iterator entries(fs::path(folder_) / parent, failed);
-  for (; !failed && entries != fs::directory_iterator(); entries.increment(failed)) {
-    const std::string each = entries->path().filename().string();
-    if (!each.starts_with(before) || !each.ends_with(after)) continue;
-    if (auto inside = check_one(base, (parent / each).string()); !inside) return inside;
+  std::vector<fs::path> meant = {fs::path()};
+  for (const fs::path& step : fs::path(file)) {
+    std::vector<fs::path> longer;
+    for (const fs::path& way : meant) add_meant(fs::path(folder_), way, step.string(), longer);
+    meant = std::move(longer);
+  }
+  for (const fs::path& each : meant) {
+    if (auto inside = check_one(base, each.string()); !inside) return inside;
   }
   return {};
 }

@@ -19,8 +19,8 @@ class SceneLinks {
 
   /// Whether `file`, as a reference that scene file `scene` names, lies in the scene's folder or
   /// below it when all links are followed. An error that names the link and says what to do. Files
-  /// that are not there are none of its business; of a pattern (`<UDIM>`, `####`) all are looked at
-  /// that it may mean.
+  /// that are not there are none of its business; of a pattern (`<UDIM>`, `####`, in folders' names
+  /// too) all are looked at that it may mean.
   Status check(const std::string& scene, const std::string& file) const;
 
  private:

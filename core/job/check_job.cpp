@@ -209,19 +209,24 @@ void check_files(ReadContext& context, AssetResolver& assets) {
 }
 
 /// Opens what the colour configuration names, so that it travels with the job. What is missing is
-/// missed only by those displays that need it.
+/// missed only by those displays that need it. Scripts bring none: OpenColorIO opens what it finds
+/// named there, in more ways than are found here.
 void find_color_files(ReadContext& context, AssetResolver& assets) {
   if (!context.job.color) return;
   ColorDesc& color = *context.job.color;
   const auto use =
       std::find_if(context.files.begin(), context.files.end(),
                    [&](const FileUse& file) { return file.reference == color.config; });
-  if (use == context.files.end() || !may_name(use->script, color.config, assets)) return;
+  if (use == context.files.end()) return;
+  if (!use->script.empty()) {
+    context.complain(use->where, use->label + " is named by the script " + use->script +
+                                     ", expected it in the job that includes the script");
+    return;
+  }
   const auto config = assets.open(color.config);
   if (!config) return;  // complained about already
   for (const std::string& file : ocio_file_candidates({config->chars(), config->size()})) {
     const std::string reference = resolve_reference(file, color.config);
-    if (!may_name(use->script, reference, assets)) continue;
     if (assets.open(file, color.config)) color.files.push_back(reference);
   }
 }

@@ -22,6 +22,7 @@ namespace {
 constexpr size_t kMaxDepth = 16;
 constexpr size_t kMaxFiles = 256;
 constexpr size_t kMaxBytes = size_t{64} << 20;
+constexpr uint64_t kMaxValues = 2 * kMaxYamlNodes;  ///< of all files together
 
 class Loader {
  public:
@@ -34,7 +35,9 @@ class Loader {
                const std::string& script) {
     bytes_ += text.size();
     YamlPtr own = parse_yaml(text, shown, diagnostics_);
-    if (own == nullptr || own->kind != YamlNode::Kind::map) return own;
+    if (own == nullptr) return own;
+    values_ += own->weight;
+    if (own->kind != YamlNode::Kind::map) return own;
     // What parts of a script say is said by the script, whose folder its files are named from.
     std::set<std::string> places = MadeLines(text, shown).other_files();
     if (!open_.empty()) {
@@ -157,6 +160,11 @@ class Loader {
                                        std::to_string(kMaxBytes >> 20) + " MiB in all");
       return std::nullopt;
     }
+    if (values_ > kMaxValues) {
+      diagnostics_.add(name.where, "the included files have more than " +
+                                       std::to_string(kMaxValues) + " values in all");
+      return std::nullopt;
+    }
     // Complaints about what importers make are complaints about the scene.
     const std::string shown = (main_.parent_path() / named).lexically_normal().string();
     tree.includes.push_back(reference);
@@ -242,6 +250,7 @@ class Loader {
       if (!file) return;
       seen_.insert(file->reference);
       bytes_ += file->bytes.size();
+      if (!file->script.empty()) tree.origins.scripts[file->shown] = file->script;
       const YamlPtr section =
           read_media_file({file->bytes.chars(), file->bytes.size()}, file->shown, diagnostics_);
       if (section != nullptr) all = join_section(*all, *section, false, diagnostics_);
@@ -264,6 +273,7 @@ class Loader {
   std::vector<std::string> open_;  ///< files being read, from the job inwards
   std::set<std::string> seen_;
   size_t bytes_ = 0;
+  uint64_t values_ = 0;
   // Of the job itself:
   float fps_ = SceneDocument().fps;
   bool says_fps_ = false;

@@ -56,10 +56,20 @@ int protected_call(lua_State* state) {
   return lua_gettop(state);
 }
 
+/// A script's handler of errors. At a limit Lua would run it without looking at any.
+int handler(lua_State* state) {
+  if (Machine::of(state).stopped()) return lua_gettop(state);
+  lua_pushvalue(state, lua_upvalueindex(1));
+  lua_insert(state, 1);
+  lua_call(state, lua_gettop(state) - 1, 1);
+  return 1;
+}
+
 int protected_call_with_handler(lua_State* state) {
   luaL_checktype(state, 2, LUA_TFUNCTION);
   lua_pushvalue(state, 1);
   lua_pushvalue(state, 2);
+  lua_pushcclosure(state, handler, 1);
   lua_replace(state, 1);
   lua_replace(state, 2);  // the handler, the function, its arguments
   const int status = lua_pcall(state, lua_gettop(state) - 2, LUA_MULTRET, 1);

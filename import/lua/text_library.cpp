@@ -19,14 +19,20 @@ std::string_view text_at(lua_State* state, int at) {
   return {text, size};
 }
 
+/// Bytes that are compared in the time of one step.
+constexpr double kComparedPerStep = 32.0;
+
 /// How often a pattern may try a place of a text of `size` bytes: each `*`, `+` and `-` may end
-/// anywhere, each `?` in two places. What stands in sets counts as well, which does no harm.
-double worst_matching(std::string_view pattern, double size) {
-  double steps = pattern.starts_with('^') ? 1.0 : size + 1.0;
+/// anywhere, each `?` in two places; what was captured may be compared to its end. `anchored`: it
+/// is tried at the beginning alone. What stands in sets counts as well, which does no harm.
+double worst_matching(std::string_view pattern, double size, bool anchored) {
+  double steps = anchored ? 1.0 : size + 1.0;
   for (size_t i = 0; i < pattern.size(); ++i) {
     const char c = pattern[i];
     if (c == '%') {
-      if (++i < pattern.size() && (pattern[i] == 'b' || pattern[i] == 'f')) steps *= size + 1.0;
+      if (++i == pattern.size()) break;
+      if (pattern[i] == 'b' || pattern[i] == 'f') steps *= size + 1.0;
+      if (pattern[i] >= '1' && pattern[i] <= '9') steps *= size / kComparedPerStep + 1.0;
     } else if (c == '*' || c == '+' || c == '-') {
       steps *= size + 1.0;
     } else if (c == '?') {
@@ -37,13 +43,15 @@ double worst_matching(std::string_view pattern, double size) {
 }
 
 /// Before `find`, `match`, `gmatch` and `gsub`: Lua's matcher tries all ways to match, counts none
-/// of them and cannot be stopped.
-int guard_matching(lua_State* state) {
+/// of them and cannot be stopped. `knows_anchor`: a `^` before the pattern is none of its letters.
+int guard_pattern(lua_State* state, bool knows_anchor) {
   const std::string_view text = text_at(state, 1);
   const std::string_view pattern = text_at(state, 2);
-  // A set, or what was captured, may be as long as the pattern or the text.
+  // A set may be as long as the pattern.
   const double longest = static_cast<double>(pattern.size()) / 100.0 + 1.0;
-  const double steps = worst_matching(pattern, static_cast<double>(text.size())) * longest;
+  const bool anchored = knows_anchor && pattern.starts_with('^');
+  const double steps =
+      worst_matching(pattern, static_cast<double>(text.size()), anchored) * longest;
   if (!(steps <= kMostMatching)) {
     return luaL_error(state,
                       "this pattern may take too long on a text of %d bytes, expected fewer *, +, "
@@ -55,9 +63,15 @@ int guard_matching(lua_State* state) {
   return call_original(state);
 }
 
+int guard_matching(lua_State* state) { return guard_pattern(state, true); }
+
+int guard_all_matches(lua_State* state) { return guard_pattern(state, false); }
+
 int guard_find(lua_State* state) {
   if (lua_toboolean(state, 4) == 0) return guard_matching(state);
-  Machine::of(state).spend(text_at(state, 1).size() + text_at(state, 2).size());
+  const auto text = static_cast<double>(text_at(state, 1).size());
+  const auto wanted = static_cast<double>(text_at(state, 2).size());
+  Machine::of(state).spend(static_cast<uint64_t>(text * (wanted / kComparedPerStep + 1.0)));
   return call_original(state);
 }
 
@@ -101,9 +115,9 @@ void open_text(lua_State* state) {
   lua_pushnil(state);
   lua_setfield(state, -2, "dump");
   guard_function(state, "find", guard_find);
-  for (const char* const name : {"match", "gmatch", "gsub"}) {
-    guard_function(state, name, guard_matching);
-  }
+  guard_function(state, "match", guard_matching);
+  guard_function(state, "gsub", guard_matching);
+  guard_function(state, "gmatch", guard_all_matches);
   guard_function(state, "rep", guard_repeat);
   guard_function(state, "format", guard_format);
   lua_pop(state, 1);

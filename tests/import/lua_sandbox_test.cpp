@@ -118,19 +118,37 @@ TEST(LuaSandbox, WhatIsReturnedNamesFilesOfTheFolderAlone) {
               HasSubstr("in/b.lua:1: file of texture 't': '../x.png' leads out of the folder"));
 }
 
-TEST(LuaSandbox, ItsColourConfigurationNamesFilesOfTheFolderAlone) {
+TEST(LuaSandbox, ItBringsNoColourConfiguration) {
   MemoryAssets files;
   files.add("in/c.ocio", "- !<FileTransform> {src: ../x.lut}\n- !<FileTransform> {src: y.lut}\n");
   files.add("x.lut", "a table");
   files.add("in/y.lut", "a table");
   files.add("in/s.lua", "return {color = {config = 'c.ocio'}}");
-  const auto found = [&](const std::string& job) {
-    Job read;
-    EXPECT_EQ(job_complaints(job, files, &read), "");
-    return read.color ? read.color->files : std::vector<std::string>();
-  };
-  EXPECT_EQ(found("color: {config: in/c.ocio}\n"), (std::vector<std::string>{"x.lut", "in/y.lut"}));
-  EXPECT_EQ(found("include: in/s.lua\n"), std::vector<std::string>{"in/y.lut"});
+  files.add("in/c.yaml", "color: {config: c.ocio}\n");
+  files.add("in/by_include.lua", "return {include = 'c.yaml'}");
+  Job read;
+  EXPECT_EQ(job_complaints("color: {config: in/c.ocio}\n", files, &read), "");
+  ASSERT_TRUE(read.color);
+  EXPECT_EQ(read.color->files, (std::vector<std::string>{"x.lut", "in/y.lut"}));
+  // OpenColorIO opens what it finds named there, such as /dev/zero.
+  EXPECT_THAT(job_complaints("include: in/s.lua\n", files),
+              HasSubstr("is named by the script in/s.lua, expected it in the job"));
+  EXPECT_THAT(job_complaints("include: in/by_include.lua\n", files),
+              HasSubstr("is named by the script in/by_include.lua"));
+}
+
+TEST(LuaSandbox, FilesOfMediaAreReadByItsWord) {
+  MemoryAssets files;
+  files.add("x.nvdb", "a volume");
+  files.add("in/m.yaml", "media:\n  smoke: {scattering: 1, density: {vdb: ../x.nvdb}}\n");
+  files.add("in/s.lua", "return {media = {file = 'm.yaml'}}");
+  files.add("in/more.yaml", "media: {file: m.yaml}\n");
+  files.add("in/by_include.lua", "return {include = 'more.yaml'}");
+  const char* const leads_out = "'../x.nvdb' leads out of the folder";
+  EXPECT_THAT(job_complaints("include: in/s.lua\n", files), HasSubstr(leads_out));
+  EXPECT_THAT(job_complaints("include: in/by_include.lua\n", files), HasSubstr(leads_out));
+  EXPECT_THAT(job_complaints("media: {file: in/m.yaml}\n", files), Not(HasSubstr(leads_out)))
+      << "a job may";
 }
 
 TEST(LuaSandbox, ATextThatIsReturnedOftenCountsEachTime) {
@@ -242,6 +260,7 @@ TEST(LuaSandbox, LimitsAreNotCaught) {
   for (const char* script : {
            "while true do pcall(function() while true do end end) end",
            "while true do xpcall(function() while true do end end, function(e) return e end) end",
+           "xpcall(function() while true do end end, function() while true do end end)",
            "pcall(function() while true do end end) v = 1",
            "setmetatable({}, {__index = function() while true do end end}).x = nil\n"
            "local t = setmetatable({}, {__index = function() while true do end end})\n"
@@ -283,6 +302,12 @@ TEST(LuaSandbox, PatternsThatWouldTryForEverAreRefused) {
   EXPECT_THAT(attack("string.find(('('):rep(60000), '%b()%b()')"), HasSubstr(refused));
   EXPECT_THAT(attack("string.find(('a'):rep(40000), 'a*b')"), HasSubstr(refused))
       << "a search begins anywhere";
+  EXPECT_THAT(attack("for _ in string.gmatch(('^'):rep(40000), '^.*b') do end"), HasSubstr(refused))
+      << "an anchor is a letter there";
+  EXPECT_THAT(attack("string.find(('a'):rep(400000), '^(.*)%1b')"), HasSubstr(refused));
+  EXPECT_THAT(attack("string.find(('a'):rep(2000000), ('a'):rep(1000000) .. 'b', 1, true)"),
+              HasSubstr("takes more than 5,000,000 steps"));
+  EXPECT_EQ(lua_value("v = ('say \"a\" now'):match('([\"\\'])(.-)%1')"), "v: \"\\\"\"\n");
   EXPECT_EQ(lua_value("v = ('  a b  '):match('^%s*(.-)%s*$')"), "v: a b\n");
   EXPECT_EQ(lua_value("v = 0 for x in ('1 2 3'):gmatch('%d+') do v = v + x end"), "v: 6\n");
 }

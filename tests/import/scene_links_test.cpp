@@ -123,6 +123,16 @@ TEST_F(Links, OfAnyFileOfAPatternAreRefused) {
   EXPECT_FALSE(links.check("scene/a.obj", "scene/skin.<UDIM>.png"));
   link("../secrets/id.png", "scene/walk.0001.ply");
   EXPECT_FALSE(links.check("scene/a.obj", "scene/walk.####.ply"));
+  write("scene/tiles1/1001.png", "x");
+  EXPECT_TRUE(links.check("scene/a.obj", "scene/tiles#/<UDIM>.png"));
+  link("../../secrets/id.png", "scene/tiles1/1002.png");
+  EXPECT_FALSE(links.check("scene/a.obj", "scene/tiles#/<UDIM>.png")) << "in a folder";
+  link("../secrets", "scene/d1001");
+  EXPECT_FALSE(links.check("scene/a.obj", "scene/d<UDIM>/id.png")) << "a folder";
+  link("../secrets/id.png", "scene/x<UDIM>1.ply");
+  EXPECT_FALSE(links.check("scene/a.obj", "scene/x<UDIM>#.ply")) << "of both kinds";
+  link("../secrets/id.png", "scene/plain#.png");
+  EXPECT_FALSE(links.check("scene/a.obj", "scene/plain#.png")) << "as it is written";
 }
 
 TEST_F(Links, ImportKeepsToTheSameRule) {

@@ -126,6 +126,21 @@ TEST(Include, DepthAndNumberAreLimited) {
       std::string::npos);
 }
 
+TEST(Include, ValuesOfAllFilesAreLimited) {
+  // A million values each, nearly all of them by an alias.
+  std::string many = "objects: {a: {mesh: [&row [0";
+  for (int i = 0; i < 1000; ++i) many += ", 0";
+  many += "]";
+  for (int i = 0; i < 999; ++i) many += ", *row";
+  many += "]}}\n";
+  MemoryAssets files;
+  for (const char* name : {"a", "b", "c", "d"}) files.add(std::string(name) + ".yaml", many);
+  const std::string told =
+      read_including("hyades: 1\ninclude: [a.yaml, b.yaml, c.yaml, d.yaml]\n", files).complaints;
+  EXPECT_NE(told.find("the included files have more than 2097152 values in all"), std::string::npos)
+      << told.substr(0, 500);
+}
+
 TEST(Include, WhatIsNoMapIsRefused) {
   MemoryAssets assets;
   assets.add("list.yaml", "- a\n");
