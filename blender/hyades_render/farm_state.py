@@ -107,13 +107,13 @@ def _take_jobs(seen: Any) -> None:
         rows.add()
     for row, job in zip(rows, seen.jobs):
         # A coordinator may say anything, Blender's properties take no more than this.
-        row.job_id, row.share = str(job.id), job.share
+        row.job_id, row.share = str(job.id), max(0.0, min(job.share, 1.0))
         row.name, row.state, row.reason = (printable_lines(text)[:200] for text in (job.name, job.state, job.reason))
         row.frames, row.frames_done, row.frames_failed, row.seconds_left = (
             max(-_MOST_WHOLE, min(number, _MOST_WHOLE))
             for number in (job.frames, job.frames_done, job.frames_failed, job.seconds_left)
         )
-        row.noise = -1.0 if job.noise is None else job.noise
+        row.noise = -1.0 if job.noise is None else min(job.noise, 1e30)
     if _previews is None or bpy.app.background:
         return
     for gone in _shown.keys() - seen.thumbnails.keys():
