@@ -154,9 +154,10 @@ uint64_t ContentStore::free_partials(uint64_t bytes) {
   return freed;
 }
 
-Status ContentStore::make_room(const std::string& begun, uint64_t bytes) {
+Status ContentStore::make_room(const std::string& begun, uint64_t bytes, bool* crowded) {
   if (options_.budget == 0) return {};
   if (bytes > options_.budget) {
+    if (crowded != nullptr) *crowded = true;
     return Error{fmt::format("a file of {} is larger than the whole budget of {}, {}",
                              core::format_bytes(bytes), options_.folder,
                              core::format_bytes(options_.budget))};
@@ -181,6 +182,7 @@ Status ContentStore::make_room(const std::string& begun, uint64_t bytes) {
     if (remove_if_free(file.path)) used -= file.size;
   }
   if (used <= options_.budget) return {};
+  if (crowded != nullptr) *crowded = true;
   return Error{fmt::format("the budget of {}, {}, is taken by files in use: {} more are needed",
                            options_.folder, core::format_bytes(options_.budget),
                            core::format_bytes(used - options_.budget))};

@@ -160,11 +160,11 @@ Result<ContentPin> ContentStore::pin(const std::string& name) {
 }
 
 Result<ContentWriter> ContentStore::write(const std::string& name, uint64_t size,
-                                          const Uploader& whose) {
+                                          const Uploader& whose, bool* crowded) {
   if (!is_content_name(name)) return not_a_name(name);
   sweep_partials();
   const std::string begun = partial_path(name, whose.owner);
-  if (auto fits = make_room(begun, size); !fits) return fits.error();
+  if (auto fits = make_room(begun, size, crowded); !fits) return fits.error();
   ContentWriter writer(*this, name, size);
   expected_ += size;
   {

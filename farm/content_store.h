@@ -93,10 +93,11 @@ class ContentStore {
   /// of the same owner's. Of two that write the same file at once for one owner the second begins
   /// its own copy; the first that is whole and right becomes the file. With a budget, files that
   /// were not used for longest make room; it is an error if those that are not pinned are too few.
+  /// `crowded` becomes whether the budget has no room for it, which is no fault of the disk.
   /// Where `whose` has as many unfinished files as he may, those of his that rest for longest (a
   /// minute at least) make room. The store must outlive the writer.
   core::Result<ContentWriter> write(const std::string& name, uint64_t size,
-                                    const Uploader& whose = {});
+                                    const Uploader& whose = {}, bool* crowded = nullptr);
 
   /// How many bytes of file `name` an unfinished write of this owner's has left: where write() will
   /// probably go on. Makes nothing and reads nothing, so that answering anybody's question costs
@@ -143,7 +144,7 @@ class ContentStore {
   void remember(const std::string& name, const Identity& identity);
   /// Evicts until `bytes` more fit, of which there are some in the unfinished file `begun` (empty:
   /// none).
-  core::Status make_room(const std::string& begun, uint64_t bytes);
+  core::Status make_room(const std::string& begun, uint64_t bytes, bool* crowded = nullptr);
   void sweep_partials();
   /// Whether the uploader may have the unfinished file at `path` beside his others, some of which
   /// may have to go.

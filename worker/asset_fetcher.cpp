@@ -42,6 +42,25 @@ size_t most_pins() {
 
 std::string name_of(const v1::JobFile& file) { return farm::hex_from_wire(file.sha256()); }
 
+/// What is wrong with a piece that comes for the writer.
+core::Status check_piece(const v1::Chunk& piece, const farm::ContentWriter& writer) {
+  if (piece.offset() != writer.offset()) {
+    return core::Error{
+        fmt::format("a piece from byte {} came, {} was expected", piece.offset(), writer.offset())};
+  }
+  if (piece.data().size() > writer.size() - writer.offset()) {
+    return core::Error{fmt::format("it has more than {} bytes", writer.size())};
+  }
+  return {};
+}
+
+/// Of a file whose name is one.
+core::Sha256 digest_of(const v1::JobFile& file) {
+  core::Sha256 digest{};
+  std::copy(file.sha256().begin(), file.sha256().end(), digest.begin());
+  return digest;
+}
+
 }  // namespace
 
 class AssetFetcher::FileClaim {
@@ -131,11 +150,43 @@ void AssetFetcher::release(uint64_t job) {
     if (wanted->call != nullptr) wanted->call->TryCancel();
     wake_.notify_all();
   }
-  if (const auto pins = pins_.find(job); pins != pins_.end()) {
-    released = std::move(pins->second);
-    pinned_ -= released.size();
-    pins_.erase(pins);
+  if (const auto files = pinned_.find(job); files != pinned_.end()) {
+    released = let_go(files->second);
+    pinned_.erase(files);
   }
+}
+
+/// Counts the files as in work; an error where they are more than may be open.
+AssetFetcher::Outcome AssetFetcher::keep(const Digests& files) {
+  if (files.size() > most_pins_) {
+    return Failure{fmt::format("the job has {} files; this worker can keep {} at once (ulimit -n)",
+                               files.size(), most_pins_),
+                   FilesTrouble::hopeless};
+  }
+  const core::MutexLock lock(mutex_);
+  const auto others = static_cast<size_t>(
+      std::count_if(files.begin(), files.end(),
+                    [this](const core::Sha256& file) { return !kept_.contains(file); }));
+  if (kept_.size() + others > most_pins_) {
+    return Failure{
+        fmt::format("the job has {} files that are not in use; this worker can keep {} at once "
+                    "(ulimit -n), and other jobs have {}",
+                    others, most_pins_, kept_.size())};
+  }
+  for (const core::Sha256& file : files) ++kept_[file].jobs;
+  return std::nullopt;
+}
+
+/// Undoes keep(); the pins that go are to be let go of without the lock.
+std::vector<farm::ContentPin> AssetFetcher::let_go(const Digests& files) {
+  std::vector<farm::ContentPin> pins;
+  for (const core::Sha256& file : files) {
+    const auto kept = kept_.find(file);
+    if (--kept->second.jobs > 0) continue;
+    if (kept->second.pin) pins.push_back(std::move(*kept->second.pin));
+    kept_.erase(kept);
+  }
+  return pins;
 }
 
 void AssetFetcher::loop() {
@@ -158,7 +209,7 @@ void AssetFetcher::loop() {
       if (wanted->dropped) continue;
     }
     if (failed) {
-      owner_.files_failed(wanted->job, failed->reason, failed->final);
+      owner_.files_failed(wanted->job, failed->reason, failed->trouble);
     } else {
       owner_.files_are_there(wanted->job);
     }
@@ -168,47 +219,46 @@ void AssetFetcher::loop() {
 AssetFetcher::Outcome AssetFetcher::fetch_all(Wanted& wanted) {
   v1::JobSpec spec;
   spec.ParseFromString(wanted.spec);
-  const auto files = static_cast<size_t>(spec.files_size());
-  {
-    const core::MutexLock lock(mutex_);
-    if (pinned_ + files > most_pins_) {
-      return Failure{
-          fmt::format("the job has {} files; this worker can keep {} at once, of which "
-                      "{} are in use (ulimit -n)",
-                      files, most_pins_, pinned_)};
+  Digests files;
+  files.reserve(static_cast<size_t>(spec.files_size()));
+  for (const v1::JobFile& file : spec.files()) {
+    if (file.sha256().size() != sizeof(core::Sha256)) {
+      return Failure{file.path() + ": its name is no SHA-256", FilesTrouble::hopeless};
     }
-    pinned_ += files;
+    files.push_back(digest_of(file));
   }
-  std::vector<farm::ContentPin> pins;
-  Outcome failed = fetch_each(wanted, spec, pins);
+  std::sort(files.begin(), files.end());
+  files.erase(std::unique(files.begin(), files.end()), files.end());
+  if (auto failed = keep(files)) return failed;
+  Outcome failed = fetch_each(wanted, spec);
+  std::vector<farm::ContentPin> released;  // let go of without the lock
   const core::MutexLock lock(mutex_);
   if (!failed && unwanted(wanted)) failed = Failure{"no longer wanted"};
   if (failed) {
-    pinned_ -= files;  // the pins go
+    released = let_go(files);
     return failed;
   }
-  auto& kept = pins_[wanted.job];
-  pinned_ -= kept.size();
-  kept = std::move(pins);
+  std::swap(pinned_[wanted.job], files);
+  released = let_go(files);  // that the job had before
   return std::nullopt;
 }
 
-AssetFetcher::Outcome AssetFetcher::fetch_each(Wanted& wanted, const v1::JobSpec& spec,
-                                               std::vector<farm::ContentPin>& pins) {
+AssetFetcher::Outcome AssetFetcher::fetch_each(Wanted& wanted, const v1::JobSpec& spec) {
   for (const v1::JobFile& file : spec.files()) {
-    if (file.sha256().size() != sizeof(core::Sha256)) {
-      return Failure{file.path() + ": its name is no SHA-256", true};
-    }
     const std::string name = name_of(file);
     // Another process may evict a file before it is pinned.
     for (int attempt = 0;; ++attempt) {
       if (auto failed = fetch_file(wanted, file)) return failed;
       auto pin = store_.pin(name);
       if (pin) {
-        pins.push_back(std::move(*pin));
+        // In place of another job's, which may be of a file that was damaged.
+        const core::MutexLock lock(mutex_);
+        kept_.at(digest_of(file)).pin = std::move(*pin);
         break;
       }
-      if (attempt == 2) return Failure{pin.error().in(file.path()).message};
+      if (attempt == 2) {
+        return Failure{pin.error().in(file.path()).message, FilesTrouble::machine};
+      }
     }
   }
   return std::nullopt;
@@ -249,18 +299,23 @@ bool AssetFetcher::pause(const Wanted& wanted, farm::Backoff::Duration time) {
   return !unwanted(wanted);
 }
 
-/// Nobody else's, the job's least of all.
-AssetFetcher::Failure AssetFetcher::local_trouble(const core::Error& error) {
+/// Nobody else's.
+AssetFetcher::Failure AssetFetcher::local_trouble(const core::Error& error, FilesTrouble trouble) {
   Failure failure;
   failure.reason = error.message;
+  failure.trouble = trouble;
   failure.again = true;
   failure.local = true;
   return failure;
 }
 
 AssetFetcher::Outcome AssetFetcher::download(Wanted& wanted, const v1::JobFile& file) {
-  auto writer = store_.write(name_of(file), file.size());
-  if (!writer) return local_trouble(writer.error().in(file.path()));
+  bool crowded = false;
+  auto writer = store_.write(name_of(file), file.size(), {}, &crowded);
+  if (!writer) {
+    return local_trouble(writer.error().in(file.path()),
+                         crowded ? FilesTrouble::job : FilesTrouble::machine);
+  }
   const auto stub = v1::Assets::NewStub(channel_);
   grpc::ClientContext context;
   {
@@ -275,30 +330,30 @@ AssetFetcher::Outcome AssetFetcher::download(Wanted& wanted, const v1::JobFile& 
   request.set_offset(writer->offset());
   const auto stream = stub->Download(&context, request);
   v1::Chunk chunk;
+  core::Status fits;  // what the coordinator sends
   core::Status kept;
   while (kept && stream->Read(&chunk)) {
-    if (chunk.offset() != writer->offset()) {
-      kept = core::Error{fmt::format("a piece from byte {} came, {} was expected", chunk.offset(),
-                                     writer->offset())};
-      break;
-    }
+    fits = check_piece(chunk, *writer);
+    if (!fits) break;
     kept = writer->append(std::as_bytes(std::span(chunk.data())));
   }
-  if (!kept) context.TryCancel();
+  if (!fits || !kept) context.TryCancel();
   const grpc::Status status = stream->Finish();
   {
     const core::MutexLock lock(mutex_);
     wanted.call = nullptr;
   }
-  if (!kept) return local_trouble(kept.error().in(file.path()));
+  if (!fits) return Failure{file.path() + " cannot be fetched: " + fits.error().message};
+  if (!kept) return local_trouble(kept.error().in(file.path()), FilesTrouble::machine);
   if (!status.ok()) {
     // Even a file that is not there may be uploaded again; and giving units back at once would only
     // bring them here again at once.
-    return Failure{file.path() + " cannot be fetched: " + status.error_message(), false, true,
-                   false, milliseconds(farm::detail_of(status).retry_after_ms())};
+    return Failure{file.path() + " cannot be fetched: " + status.error_message(), FilesTrouble::job,
+                   true, false, milliseconds(farm::detail_of(status).retry_after_ms())};
   }
+  // Fewer bytes than the job says that there are, or others.
   if (auto done = writer->commit(); !done) {
-    return local_trouble(done.error().in(file.path()));
+    return local_trouble(done.error().in(file.path()), FilesTrouble::job);
   }
   return std::nullopt;
 }

@@ -13,11 +13,13 @@
 #include <thread>
 #include <vector>
 
+#include "core/base/hash.h"
 #include "core/base/mutex.h"
 #include "core/base/result.h"
 #include "farm/backoff.h"
 #include "farm/content_store.h"
 #include "hyades/v1/common.pb.h"
+#include "worker/files_trouble.h"
 
 namespace grpc {
 class Channel;
@@ -36,8 +38,7 @@ class AssetFetcher {
    public:
     virtual ~Owner() = default;
     virtual void files_are_there(uint64_t job) = 0;
-    /// `final`: trying again here, or elsewhere, gives the same. Trouble of the cache never is.
-    virtual void files_failed(uint64_t job, const std::string& reason, bool final) = 0;
+    virtual void files_failed(uint64_t job, const std::string& reason, FilesTrouble trouble) = 0;
   };
 
   /// `store` and `owner` outlive the fetcher. A coordinator that cannot be reached is tried again
@@ -76,22 +77,29 @@ class AssetFetcher {
   };
   /// Of a file: nobody else fetches it meanwhile.
   class FileClaim;
+  /// A file that jobs have, or will have, in work: open once, for all of them.
+  struct Kept {
+    size_t jobs = 0;
+    std::optional<farm::ContentPin> pin;
+  };
+  using Digests = std::vector<core::Sha256>;  ///< of a job's files, none twice
   struct Failure {
     std::string reason;
-    bool final = false;
+    FilesTrouble trouble = FilesTrouble::job;
     bool again = false;                        ///< the same may succeed soon
-    bool local = false;                        ///< the trouble is this machine's
+    bool local = false;                        ///< of this machine's cache
     std::chrono::milliseconds retry_after{0};  ///< what the coordinator asked for
   };
   using Outcome = std::optional<Failure>;
 
   void loop() HYADES_EXCLUDES(mutex_);
   Outcome fetch_all(Wanted& wanted) HYADES_EXCLUDES(mutex_);
-  Outcome fetch_each(Wanted& wanted, const v1::JobSpec& spec, std::vector<farm::ContentPin>& pins)
-      HYADES_EXCLUDES(mutex_);
+  Outcome keep(const Digests& files) HYADES_EXCLUDES(mutex_);
+  std::vector<farm::ContentPin> let_go(const Digests& files) HYADES_REQUIRES(mutex_);
+  Outcome fetch_each(Wanted& wanted, const v1::JobSpec& spec) HYADES_EXCLUDES(mutex_);
   Outcome fetch_file(Wanted& wanted, const v1::JobFile& file) HYADES_EXCLUDES(mutex_);
   void check_again(const std::string& name) HYADES_EXCLUDES(mutex_);
-  static Failure local_trouble(const core::Error& error);
+  static Failure local_trouble(const core::Error& error, FilesTrouble trouble);
   Outcome fetch_patiently(Wanted& wanted, const v1::JobFile& file) HYADES_EXCLUDES(mutex_);
   Outcome download(Wanted& wanted, const v1::JobFile& file) HYADES_EXCLUDES(mutex_);
   bool pause(const Wanted& wanted, farm::Backoff::Duration time) HYADES_EXCLUDES(mutex_);
@@ -112,10 +120,10 @@ class AssetFetcher {
   std::deque<std::shared_ptr<Wanted>> wanted_ HYADES_GUARDED_BY(mutex_);
   /// One for each busy thread.
   std::vector<std::shared_ptr<Wanted>> in_work_ HYADES_GUARDED_BY(mutex_);
-  std::set<std::string> claimed_ HYADES_GUARDED_BY(mutex_);     ///< files that are being fetched
-  std::set<std::string> to_recheck_ HYADES_GUARDED_BY(mutex_);  ///< files that recheck() has named
-  std::map<uint64_t, std::vector<farm::ContentPin>> pins_ HYADES_GUARDED_BY(mutex_);
-  size_t pinned_ HYADES_GUARDED_BY(mutex_) = 0;  ///< of these, and of jobs in work
+  std::set<std::string> claimed_ HYADES_GUARDED_BY(mutex_);      ///< files that are being fetched
+  std::set<std::string> to_recheck_ HYADES_GUARDED_BY(mutex_);   ///< files that recheck() has named
+  std::map<core::Sha256, Kept> kept_ HYADES_GUARDED_BY(mutex_);  ///< no more than most_pins_
+  std::map<uint64_t, Digests> pinned_ HYADES_GUARDED_BY(mutex_);  ///< by job: files of these
   bool stop_ HYADES_GUARDED_BY(mutex_) = false;
 
   std::atomic<uint64_t> cache_bytes_;

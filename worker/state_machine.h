@@ -14,6 +14,7 @@
 #include "farm/backoff.h"
 #include "farm/log.h"
 #include "hyades/v1/work.pb.h"
+#include "worker/files_trouble.h"
 #include "worker/pipe/render_pipe.pb.h"
 #include "worker/unit_clock.h"
 
@@ -120,10 +121,11 @@ class StateMachine {
 
   // The job's files.
   void files_are_there(uint64_t job);
-  /// The units that wait for them go back; `final` where no other worker can have more luck, and
-  /// then they have failed. Otherwise no more work is asked for during a rest, which grows with
-  /// each failure until the files of a job are there again.
-  void files_failed(uint64_t job, const std::string& why, bool final, TimePoint now);
+  /// The units that wait for them have failed, or go back. Then there is a rest, which grows with
+  /// each failure until files are there again: of the job's trouble it is the job's alone, whose
+  /// units are held as they come, a few, and the others' go on; of the machine's it is the
+  /// worker's, and no more work is asked for.
+  void files_failed(uint64_t job, const std::string& why, FilesTrouble trouble, TimePoint now);
 
   /// What heartbeats tell of the cache from now on.
   void cache_is(const CacheFacts& cache) { cache_ = cache; }
@@ -160,17 +162,25 @@ class StateMachine {
     std::optional<TimePoint> send_again;
   };
   struct Job {
+    explicit Job(uint32_t seed) : rests(kFirstRest, kLongestJobRest, seed) {}
+
     std::string spec;      ///< a v1::JobSpec as it travels, which takes a fraction of the memory
     bool briefed = false;  ///< on the stream that is open
     bool has_files = false;
     bool fetching = false;
     bool told = false;  ///< the child knows it
     bool over = false;
+    // Its files cannot be had.
+    farm::Backoff rests;
+    std::optional<TimePoint> rests_until;  ///< its units are held until then
+    std::string trouble;                   ///< told to people
+    std::string hopeless;                  ///< why this worker will never have them
   };
   using Items = std::map<uint64_t, Item>;
   /// A Backoff waits for at least half of these.
   static constexpr std::chrono::seconds kFirstRest{10};
   static constexpr std::chrono::seconds kLongestRest{120};
+  static constexpr std::chrono::seconds kLongestJobRest{30};  // units that are held are nobody's
   static constexpr uint64_t kBriefBytes = uint64_t{6} << 10U;
 
   // state_machine.cpp: the units in hand.
@@ -188,12 +198,14 @@ class StateMachine {
   void add_job(const v1::JobBrief& brief);
   void forget_former_jobs();
   void job_over(uint64_t job);
-  void take(const v1::Lease& lease);
-  void take_unit(const v1::LeasedUnit& leased, bool adopted);
+  void take(const v1::Lease& lease, TimePoint now);
+  void take_unit(const v1::LeasedUnit& leased, bool adopted, TimePoint now);
+  void give_back(const v1::LeasedUnit& leased, const std::string& reason);
   void acknowledged(const v1::LeasedUnit& unit);
   void unwanted(const v1::LeasedUnit& unit);
   void rejected(const v1::Rejected& message, TimePoint now);
   void send_result(const Item& item);
+  size_t enough() const { return size_t{options_.threads} + options_.ahead; }
   uint32_t take_wish();
   void top_up();
 
@@ -212,6 +224,9 @@ class StateMachine {
   void tell_child(uint64_t token, Item& item);
 
   // state_machine_files.cpp: the files of jobs.
+  void fetch_files(uint64_t id, Job& job);
+  size_t held() const;
+  void end_rests(TimePoint now);
   void recheck_files(uint64_t job, const pipe::UnitFailed& failed);
   static v1::JobSpec spec_of(const Job& job);
   static uint64_t bytes_of(const Job& job) { return job.spec.size() + kBriefBytes; }
@@ -243,10 +258,11 @@ class StateMachine {
   uint64_t renderer_memory_ = 0;
   CacheFacts cache_;
 
-  // Files cannot be had.
+  // Files cannot be had on this machine.
   farm::Backoff rests_;
   std::optional<TimePoint> rests_until_;  ///< asks for no work, and takes none that needs files
   std::string files_trouble_;             ///< told to people
+  std::optional<TimePoint> asks_again_;   ///< more units came of jobs that rest than are held
 
   bool open_ = false;
   bool welcomed_ = false;

@@ -1,4 +1,6 @@
 // The files of jobs: what waits for them, what is damaged of them, when they may go.
+#include <algorithm>
+#include <cstddef>
 #include <cstdint>
 #include <set>
 #include <string>
@@ -18,6 +20,8 @@ void StateMachine::files_are_there(uint64_t id) {
   }
   job->second.fetching = false;
   job->second.has_files = true;
+  job->second.rests.reset();
+  job->second.trouble.clear();
   rests_.reset();
   rests_until_.reset();
   files_trouble_.clear();
@@ -30,11 +34,13 @@ void StateMachine::files_are_there(uint64_t id) {
   dispatch();
 }
 
-void StateMachine::files_failed(uint64_t id, const std::string& why, bool final, TimePoint now) {
+void StateMachine::files_failed(uint64_t id, const std::string& why, FilesTrouble trouble,
+                                TimePoint now) {
   const std::string reason = farm::wire_text(why);
   const auto job = jobs_.find(id);
   if (job == jobs_.end()) return;
   job->second.fetching = false;
+  if (trouble == FilesTrouble::hopeless) job->second.hopeless = reason;
   std::vector<uint64_t> waiting;
   for (const auto& [token, item] : items_) {
     if (item.leased.job() == id && item.state == Item::State::fetching) waiting.push_back(token);
@@ -43,23 +49,54 @@ void StateMachine::files_failed(uint64_t id, const std::string& why, bool final,
   message.mutable_returned()->set_reason(reason);
   for (const uint64_t token : waiting) {
     const auto item = items_.find(token);
-    if (final) {
+    if (trouble == FilesTrouble::hopeless) {
       fail(item, reason);
     } else {
       *message.mutable_returned()->add_units() = item->second.leased;
       drop(item);
     }
   }
-  if (!final) {
+  if (trouble != FilesTrouble::hopeless) {
     // They would only come back at once.
-    rests_until_ = now + rests_.next();
-    if (files_trouble_ != reason) {
+    const bool alone = trouble == FilesTrouble::job;
+    (alone ? job->second.rests_until : rests_until_) =
+        now + (alone ? job->second.rests : rests_).next();
+    std::string& told = alone ? job->second.trouble : files_trouble_;
+    if (std::exchange(told, reason) != reason) {
       ports_.note(farm::LogLevel::warning, "units go back: " + reason, {id, {}, {}, {}});
     }
-    files_trouble_ = reason;
     if (!waiting.empty() && welcomed_) ports_.send(std::move(message));
   }
   top_up();
+}
+
+void StateMachine::fetch_files(uint64_t id, Job& job) {
+  if (job.has_files || job.fetching || job.rests_until) return;
+  job.fetching = true;
+  ports_.note(farm::LogLevel::debug, "fetches its files", {id, {}, {}, {}});
+  ports_.fetch(id, spec_of(job));
+}
+
+/// How many units wait for the end of their job's rest. Given back at once they would come again at
+/// once, since nobody has less in work than the job's owner: others would not have their turn.
+size_t StateMachine::held() const {
+  return static_cast<size_t>(std::count_if(items_.begin(), items_.end(), [&](const auto& entry) {
+    const Item& item = entry.second;
+    return item.state == Item::State::fetching && jobs_.at(item.leased.job()).rests_until;
+  }));
+}
+
+void StateMachine::end_rests(TimePoint now) {
+  if (rests_until_ && now >= *rests_until_) rests_until_.reset();
+  if (asks_again_ && now >= *asks_again_) asks_again_.reset();
+  for (auto& [id, job] : jobs_) {
+    if (!job.rests_until || now < *job.rests_until) continue;
+    job.rests_until.reset();
+    const bool wanted = std::any_of(items_.begin(), items_.end(), [id = id](const auto& entry) {
+      return entry.second.leased.job() == id && entry.second.state == Item::State::fetching;
+    });
+    if (wanted) fetch_files(id, job);
+  }
 }
 
 /// Files of other jobs are none of the child's business.

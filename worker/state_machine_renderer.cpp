@@ -189,7 +189,7 @@ void StateMachine::dispatch() {
 }
 
 void StateMachine::tell_child(uint64_t token, Item& item) {
-  Job& job = jobs_[item.leased.job()];
+  Job& job = jobs_.at(item.leased.job());
   if (!job.told) {
     pipe::ToRenderer message;
     message.mutable_job()->set_job(item.leased.job());

@@ -15,6 +15,7 @@ namespace {
 constexpr Duration kShortestHeartbeat = std::chrono::milliseconds(100);
 constexpr Duration kShortestLease = std::chrono::seconds(1);
 constexpr Duration kResendAfter = std::chrono::milliseconds(200);
+constexpr Duration kAskAgainAfter = std::chrono::seconds(1);
 /// Bytes of a unit's proof, which are 16.
 constexpr size_t kLongestProof = 1000;
 
@@ -78,7 +79,7 @@ void StateMachine::coordinator_says(v1::CoordinatorMessage message, TimePoint no
       break;
     case v1::CoordinatorMessage::kLease:
       if (!renewed_) renewed_ = now;  // units were given up, and here are others
-      take(message.lease());
+      take(message.lease(), now);
       break;
     case v1::CoordinatorMessage::kAcknowledge:
       acknowledged(message.acknowledge().unit());
@@ -122,13 +123,14 @@ void StateMachine::welcomed(const v1::Welcome& welcome, TimePoint now) {
 }
 
 void StateMachine::add_job(const v1::JobBrief& brief) {
-  const auto [there, added] = jobs_.try_emplace(brief.job());
+  const auto [there, added] = jobs_.try_emplace(brief.job(), static_cast<uint32_t>(brief.job()));
   Job& job = there->second;
   if (!added) brief_bytes_ -= bytes_of(job);
   brief.spec().SerializeToString(&job.spec);
   brief_bytes_ += bytes_of(job);
   job.briefed = true;
   job.over = false;
+  job.hopeless.clear();
   if (brief_bytes_ > options_.max_brief_bytes) forget_former_jobs();
   if (brief_bytes_ > options_.max_brief_bytes) {
     break_off("told of more jobs than all that a farm has");
@@ -158,7 +160,7 @@ void StateMachine::job_over(uint64_t id) {
   forget_idle_job(id);
 }
 
-void StateMachine::take(const v1::Lease& lease) {
+void StateMachine::take(const v1::Lease& lease, TimePoint now) {
   const auto units = static_cast<uint64_t>(lease.units_size());
   uint64_t& expected = lease.adopted() ? to_be_adopted_ : wished_;
   if (units > expected) return break_off("leases units that nobody asked for");
@@ -169,11 +171,11 @@ void StateMachine::take(const v1::Lease& lease) {
     *leased.mutable_lease() = lease.lease();
     leased.set_job(lease.job());
     *leased.mutable_unit() = unit;
-    take_unit(leased, lease.adopted());
+    take_unit(leased, lease.adopted(), now);
   }
 }
 
-void StateMachine::take_unit(const v1::LeasedUnit& leased, bool adopted) {
+void StateMachine::take_unit(const v1::LeasedUnit& leased, bool adopted, TimePoint now) {
   if (const auto there = find(leased); there != items_.end()) {
     Item& item = there->second;
     *item.leased.mutable_lease() = leased.lease();
@@ -187,24 +189,28 @@ void StateMachine::take_unit(const v1::LeasedUnit& leased, bool adopted) {
   // Asked for before the rest began.
   const bool rests = rests_until_ && job != jobs_.end() && !job->second.has_files;
   if (job == jobs_.end() || adopted || leaving_ || rests) {
-    v1::WorkerMessage message;
-    *message.mutable_returned()->add_units() = leased;
-    message.mutable_returned()->set_reason(leaving_  ? leaving_reason_
-                                           : adopted ? "given up meanwhile"
-                                           : rests   ? files_trouble_
-                                                     : "the job is not known");
-    ports_.send(std::move(message));
-    return;
+    return give_back(leased, leaving_  ? leaving_reason_
+                             : adopted ? "given up meanwhile"
+                             : rests   ? files_trouble_
+                                       : "the job is not known");
+  }
+  if (job->second.rests_until && !job->second.has_files && held() >= enough()) {
+    asks_again_ = now + kAskAgainAfter;
+    return give_back(leased, job->second.trouble);
   }
   Item item;
   item.leased = leased;
   item.state = job->second.has_files ? Item::State::waiting : Item::State::fetching;
-  items_.emplace(next_token_++, std::move(item));
-  if (!job->second.has_files && !job->second.fetching) {
-    job->second.fetching = true;
-    ports_.note(farm::LogLevel::debug, "fetches its files", {leased.job(), {}, {}, {}});
-    ports_.fetch(leased.job(), spec_of(job->second));
-  }
+  const auto taken = items_.emplace(next_token_++, std::move(item)).first;
+  if (!job->second.hopeless.empty()) return fail(taken, std::string(job->second.hopeless));
+  fetch_files(leased.job(), job->second);
+}
+
+void StateMachine::give_back(const v1::LeasedUnit& leased, const std::string& reason) {
+  v1::WorkerMessage message;
+  *message.mutable_returned()->add_units() = leased;
+  message.mutable_returned()->set_reason(reason);
+  ports_.send(std::move(message));
 }
 
 void StateMachine::acknowledged(const v1::LeasedUnit& unit) {
@@ -248,11 +254,10 @@ void StateMachine::send_result(const Item& item) {
 
 /// How many units more to ask for now; they are counted as asked for.
 uint32_t StateMachine::take_wish() {
-  if (leaving_ || rests_until_) return 0;
+  if (leaving_ || rests_until_ || asks_again_) return 0;
   if (kept_bytes_ > options_.max_kept_bytes || kept_ > options_.max_kept) return 0;
-  const size_t in_work = items_.size() - kept_ + wished_;
-  const size_t enough = size_t{options_.threads} + options_.ahead;
-  const auto wish = static_cast<uint32_t>(enough - std::min(enough, in_work));
+  const size_t in_work = items_.size() - kept_ - held() + wished_;
+  const auto wish = static_cast<uint32_t>(enough() - std::min(enough(), in_work));
   wished_ += wish;
   return wish;
 }

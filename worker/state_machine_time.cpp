@@ -23,7 +23,7 @@ void StateMachine::tick(TimePoint now, bool flowing) {
   clock_.tick(now);
   end_overdue();
   end_hang();
-  if (rests_until_ && now >= *rests_until_) rests_until_.reset();
+  end_rests(now);
   if (!welcomed_) return;
   if (now - last_heartbeat_ >= heartbeat_every_ && flowing) {
     heartbeat(now);

@@ -27,9 +27,9 @@ class FetchedFiles : public AssetFetcher::Owner {
   void files_are_there(uint64_t job) override {
     worker_.loop.post([this, job] { worker_.machine.files_are_there(job); });
   }
-  void files_failed(uint64_t job, const std::string& reason, bool final) override {
-    worker_.loop.post([this, job, reason, final] {
-      worker_.machine.files_failed(job, reason, final, Clock::now());
+  void files_failed(uint64_t job, const std::string& reason, FilesTrouble trouble) override {
+    worker_.loop.post([this, job, reason, trouble] {
+      worker_.machine.files_failed(job, reason, trouble, Clock::now());
     });
   }
 

@@ -35,7 +35,8 @@ class StuckAssets : public v1::Assets::Service {
                         grpc::ServerWriter<v1::Chunk>* writer) override {
     v1::Chunk chunk;
     if (request->sha256() == digest_of(kSmall)) {
-      chunk.set_data(kSmall);
+      chunk.set_offset(request->offset());
+      chunk.set_data(kSmall.substr(request->offset()));
       writer->Write(chunk);
       return grpc::Status::OK;
     }
@@ -74,8 +75,11 @@ class StuckAssets : public v1::Assets::Service {
 class Reports : public AssetFetcher::Owner {
  public:
   void files_are_there(uint64_t job) override { add(job, "there"); }
-  void files_failed(uint64_t job, const std::string& reason, bool final) override {
-    add(job, (final ? "final: " : "") + reason);
+  void files_failed(uint64_t job, const std::string& reason, FilesTrouble trouble) override {
+    add(job, (trouble == FilesTrouble::hopeless  ? "hopeless: "
+              : trouble == FilesTrouble::machine ? "machine: "
+                                                 : "job: ") +
+                 reason);
   }
 
   /// Waits for the first report.
@@ -83,6 +87,14 @@ class Reports : public AssetFetcher::Owner {
     std::unique_lock lock(mutex_);
     changed_.wait_for(lock, seconds(20), [this] { return !reports_.empty(); });
     return reports_;
+  }
+  /// Waits for the next report that was not taken yet.
+  std::string next() {
+    std::unique_lock lock(mutex_);
+    if (!changed_.wait_for(lock, seconds(20), [this] { return !reports_.empty(); })) return {};
+    const std::string what = reports_.front().second;
+    reports_.erase(reports_.begin());
+    return what;
   }
 
  private:
@@ -195,7 +207,7 @@ TEST(AssetFetcher, AFileThatDoesNotComeHoldsUpNobodyElse) {
   EXPECT_TRUE(served.assets.wait_until_stuck(3)) << "now it is job 3's turn";
 }
 
-TEST(AssetFetcher, TroubleOfTheCacheIsNeverFinal) {
+TEST(AssetFetcher, AFileThatTheCacheHasNoRoomForIsItsJobsTrouble) {
   const Served served;
   const test::TempFolder folder;
   const auto store = farm::ContentStore::open({folder.file("cache"), kSmall.size() - 1});
@@ -205,7 +217,38 @@ TEST(AssetFetcher, TroubleOfTheCacheIsNeverFinal) {
   fetcher.fetch(1, spec_of(kSmall));
   const auto said = reports.first();
   ASSERT_EQ(said.size(), 1U);
-  EXPECT_TRUE(said[0].second.starts_with("file: a file of ")) << said[0].second;
+  EXPECT_TRUE(said[0].second.starts_with("job: file: a file of ")) << said[0].second;
+}
+
+TEST(AssetFetcher, AFileOfAnotherLengthThanTheJobSaysIsItsJobsTrouble) {
+  const Served served;
+  const test::TempFolder folder;
+  const auto store = farm::ContentStore::open({folder.file("cache"), 0});
+  ASSERT_TRUE(store.ok());
+  Reports reports;
+  AssetFetcher fetcher(served.channel(), "", **store, reports, std::chrono::milliseconds(100));
+  v1::JobSpec spec = spec_of(kSmall);
+  spec.mutable_files(0)->set_size(kSmall.size() - 1);
+  fetcher.fetch(1, spec);
+  EXPECT_EQ(reports.next(), "job: file cannot be fetched: it has more than 11 bytes");
+  spec.mutable_files(0)->set_size(kSmall.size() + 1);
+  fetcher.fetch(2, spec);
+  const std::string fewer = reports.next();
+  EXPECT_TRUE(fewer.starts_with("job: file: ")) << fewer;
+  EXPECT_NE(fewer.find("12 of 13 bytes are there"), std::string::npos) << fewer;
+}
+
+TEST(AssetFetcher, ACacheThatCannotBeWrittenIsTheMachinesTrouble) {
+  const Served served;
+  const test::TempFolder folder;
+  const auto store = farm::ContentStore::open({folder.file("cache"), 1000});
+  ASSERT_TRUE(store.ok());
+  std::filesystem::remove_all(folder.file("cache"));
+  Reports reports;
+  AssetFetcher fetcher(served.channel(), "", **store, reports, std::chrono::milliseconds(100));
+  fetcher.fetch(1, spec_of(kSmall));
+  const std::string said = reports.next();
+  EXPECT_TRUE(said.starts_with("machine: file: ")) << said;
 }
 
 TEST(AssetFetcher, ACacheThatIsMendedSoonIsTriedAgain) {
@@ -223,36 +266,80 @@ TEST(AssetFetcher, ACacheThatIsMendedSoonIsTriedAgain) {
   EXPECT_EQ(reports.first(), expected);
 }
 
-/// Each is an open file, of which there are so many.
-TEST(AssetFetcher, AJobOfMoreFilesThanMayBeOpenGoesBackAndOthersGoOn) {
+/// Lowers the number of files that this process may have open while it lives.
+class FewOpenFiles {
+ public:
+  explicit FewOpenFiles(rlim_t most) {
+    EXPECT_EQ(::getrlimit(RLIMIT_NOFILE, &usual_), 0);
+    const rlimit few{std::min(usual_.rlim_cur, most), usual_.rlim_max};
+    EXPECT_EQ(::setrlimit(RLIMIT_NOFILE, &few), 0);
+  }
+  ~FewOpenFiles() { ::setrlimit(RLIMIT_NOFILE, &usual_); }
+  FewOpenFiles(const FewOpenFiles&) = delete;
+  FewOpenFiles& operator=(const FewOpenFiles&) = delete;
+
+ private:
+  rlimit usual_{};
+};
+
+/// A job of `count` files that are in the store: numbers from `first` on.
+v1::JobSpec numbered(farm::ContentStore& store, int first, int count) {
+  v1::JobSpec spec;
+  for (int i = first; i < first + count; ++i) {
+    const std::string bytes = std::to_string(i);
+    *spec.add_files() = spec_of(bytes).files(0);
+    auto writer = store.write(farm::hex_from_wire(digest_of(bytes)), bytes.size());
+    EXPECT_TRUE(writer && writer->append(std::as_bytes(std::span(bytes))) && writer->commit());
+  }
+  return spec;
+}
+
+/// Each is an open file, of which there are so many: no worker of this kind can have the job.
+TEST(AssetFetcher, AJobOfMoreFilesThanMayBeOpenIsHopeless) {
   const Served served;
   const test::TempFolder folder;
   const auto store = farm::ContentStore::open({folder.file("cache"), 0});
   ASSERT_TRUE(store.ok());
-  rlimit usual{};
-  ASSERT_EQ(::getrlimit(RLIMIT_NOFILE, &usual), 0);
-  const rlimit few{std::min<rlim_t>(usual.rlim_cur, 400), usual.rlim_max};
-  ASSERT_EQ(::setrlimit(RLIMIT_NOFILE, &few), 0);
-  {
-    Reports reports;
-    AssetFetcher fetcher(served.channel(), "", **store, reports, seconds(60));
-    v1::JobSpec large;
-    for (int i = 0; i < 500; ++i) *large.add_files() = spec_of(kSmall).files(0);
-    fetcher.fetch(1, large);
-    const auto said = reports.first();
-    ASSERT_EQ(said.size(), 1U);
-    EXPECT_TRUE(said[0].second.starts_with("the job has 500 files; this worker can keep 200"))
-        << said[0].second;
-    Reports others;
-    AssetFetcher fetcher_of_others(served.channel(), "", **store, others, seconds(60));
-    for (const uint64_t job : {2, 2, 2}) {  // of which nothing is counted twice
-      large.mutable_files()->DeleteSubrange(150, large.files_size() - 150);
-      fetcher_of_others.fetch(job, large);
-      EXPECT_EQ(others.first().back().second, "there");
-      fetcher_of_others.release(job);
-    }
-  }
-  ::setrlimit(RLIMIT_NOFILE, &usual);
+  const FewOpenFiles few(400);
+  Reports reports;
+  AssetFetcher fetcher(served.channel(), "", **store, reports, seconds(60));
+  v1::JobSpec large;
+  for (int i = 0; i < 201; ++i) *large.add_files() = spec_of(std::to_string(i)).files(0);
+  fetcher.fetch(1, large);
+  EXPECT_EQ(reports.next(),
+            "hopeless: the job has 201 files; this worker can keep 200 at once (ulimit -n)");
+  fetcher.fetch(2, spec_of(kSmall));
+  EXPECT_EQ(reports.next(), "there");
+}
+
+TEST(AssetFetcher, FilesThatJobsShareAreOpenOnce) {
+  const Served served;
+  const test::TempFolder folder;
+  const auto store = farm::ContentStore::open({folder.file("cache"), 0});
+  ASSERT_TRUE(store.ok());
+  const v1::JobSpec some = numbered(**store, 0, 150);
+  const v1::JobSpec others = numbered(**store, 150, 100);
+  v1::JobSpec twice = some;
+  for (const v1::JobFile& file : some.files()) *twice.add_files() = file;
+  const FewOpenFiles few(400);
+  Reports reports;
+  AssetFetcher fetcher(served.channel(), "", **store, reports, seconds(60));
+  const auto get = [&](uint64_t job, const v1::JobSpec& spec) {
+    fetcher.fetch(job, spec);
+    return reports.next();
+  };
+  EXPECT_EQ(get(1, some), "there");
+  EXPECT_EQ(get(1, some), "there") << "what a job has counts once, too";
+  EXPECT_EQ(get(2, twice), "there") << "and what it names twice";
+  EXPECT_EQ(get(3, others),
+            "job: the job has 100 files that are not in use; this worker can keep 200 at once "
+            "(ulimit -n), and other jobs have 150");
+  fetcher.release(1);
+  EXPECT_TRUE(get(3, others).starts_with("job: ")) << "job 2 has them still";
+  EXPECT_FALSE((*store)->remove_unused(farm::hex_from_wire(some.files(7).sha256()), {}));
+  fetcher.release(2);
+  EXPECT_EQ(get(3, others), "there");
+  EXPECT_TRUE((*store)->remove_unused(farm::hex_from_wire(some.files(7).sha256()), {}));
 }
 
 }  // namespace

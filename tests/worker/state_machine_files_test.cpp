@@ -67,7 +67,7 @@ TEST(StateMachine, UnitsWhoseFilesCannotBeHadGoBack) {
   world.begin();
   world.lease(WorkerWorld::unit(0));
   world.take_sent();
-  world.machine->files_failed(WorkerWorld::kJob, "not there", false, world.now);
+  world.machine->files_failed(WorkerWorld::kJob, "not there", FilesTrouble::machine, world.now);
   EXPECT_EQ(first(world.take_sent(), &Message::has_returned).returned().reason(), "not there");
   EXPECT_TRUE(world.machine->empty());
   world.now += seconds(10);
@@ -75,7 +75,8 @@ TEST(StateMachine, UnitsWhoseFilesCannotBeHadGoBack) {
   world.lease(WorkerWorld::unit(0, 2));
   EXPECT_EQ(world.ports.fetched.size(), 2U) << "and are tried again with the next lease";
   world.take_sent();
-  world.machine->files_failed(WorkerWorld::kJob, "its name is no SHA-256", true, world.now);
+  world.machine->files_failed(WorkerWorld::kJob, "its name is no SHA-256", FilesTrouble::hopeless,
+                              world.now);
   EXPECT_EQ(first(world.take_sent(), &Message::has_failure).failure().reason(),
             "its name is no SHA-256");
 }
@@ -85,7 +86,8 @@ TEST(StateMachine, RestsLongerEachTimeThatFilesCannotBeHad) {
   world.begin(1000, 10'000'000);
   const auto fail = [&] {  // how long it asks for nothing
     world.lease(WorkerWorld::unit(0));
-    world.machine->files_failed(WorkerWorld::kJob, "the disk is full", false, world.now);
+    world.machine->files_failed(WorkerWorld::kJob, "the disk is full", FilesTrouble::machine,
+                                world.now);
     world.take_sent();
     for (milliseconds rest{0};; rest += milliseconds(100)) {
       if (rest > seconds(200)) return rest;
@@ -114,7 +116,8 @@ TEST(StateMachine, WhatComesDuringARestGoesBackAtOnce) {
   WorkerWorld world;
   world.begin();
   world.lease(WorkerWorld::unit(0));
-  world.machine->files_failed(WorkerWorld::kJob, "the disk is full", false, world.now);
+  world.machine->files_failed(WorkerWorld::kJob, "the disk is full", FilesTrouble::machine,
+                              world.now);
   world.take_sent();
   world.lease(WorkerWorld::unit(0, 2));
   const auto sent = world.take_sent();
@@ -122,6 +125,76 @@ TEST(StateMachine, WhatComesDuringARestGoesBackAtOnce) {
   EXPECT_FALSE(first(sent, &Message::has_request).has_request());
   EXPECT_EQ(world.ports.fetched.size(), 1U);
   EXPECT_TRUE(world.machine->empty());
+}
+
+TEST(StateMachine, AJobWhoseFilesCannotBeHadHoldsUpNobodyElse) {
+  constexpr uint64_t kOther = 8;
+  WorkerWorld world;
+  world.begin(1000, 10'000'000);
+  world.job(kOther);
+  world.lease(WorkerWorld::unit(0));
+  world.take_sent();
+  world.machine->files_failed(WorkerWorld::kJob, "too many", FilesTrouble::job, world.now);
+  auto sent = world.take_sent();
+  EXPECT_EQ(first(sent, &Message::has_returned).returned().reason(), "too many");
+  EXPECT_EQ(first(sent, &Message::has_request).request().units(), 1U) << "it does not rest";
+  world.lease(WorkerWorld::unit(0, 2));
+  sent = world.take_sent();
+  EXPECT_FALSE(first(sent, &Message::has_returned).has_returned()) << "it would come again at once";
+  EXPECT_EQ(first(sent, &Message::has_request).request().units(), 1U) << "of others";
+  EXPECT_EQ(world.ports.fetched.size(), 1U);
+  world.lease(WorkerWorld::unit(8, 3, kOther));
+  world.machine->files_are_there(kOther);
+  EXPECT_NE(world.token_of(8), 0U);
+  world.now += seconds(10);
+  world.machine->tick(world.now, true);
+  EXPECT_EQ(world.ports.fetched.back(), WorkerWorld::kJob) << "and is tried again";
+  world.machine->files_are_there(WorkerWorld::kJob);
+  EXPECT_NE(world.token_of(0), 0U);
+  EXPECT_EQ(world.ports.notes, std::vector<std::string>{"units go back: too many"});
+}
+
+TEST(StateMachine, OfAJobThatRestsFewUnitsAreHeld) {
+  WorkerWorld world;  // which has room for three
+  world.begin(1000, 10'000'000);
+  world.lease(WorkerWorld::unit(0));
+  world.machine->files_failed(WorkerWorld::kJob, "too many", FilesTrouble::job, world.now);
+  for (int i = 1; i <= 3; ++i) world.lease(WorkerWorld::unit(8 * i, 1 + i));
+  EXPECT_EQ(world.machine->in_hand(), 3U);
+  world.take_sent();
+  world.lease(WorkerWorld::unit(40, 9));
+  auto sent = world.take_sent();
+  EXPECT_EQ(first(sent, &Message::has_returned).returned().reason(), "too many");
+  EXPECT_FALSE(first(sent, &Message::has_request).has_request()) << "it would come again at once";
+  world.now += milliseconds(1100);
+  world.machine->tick(world.now, true);
+  EXPECT_EQ(first(world.take_sent(), &Message::has_request).request().units(), 1U);
+  world.now += seconds(10);
+  world.machine->tick(world.now, true);
+  EXPECT_EQ(world.ports.fetched.size(), 2U);
+  world.take_sent();
+  world.machine->files_failed(WorkerWorld::kJob, "too many", FilesTrouble::job, world.now);
+  EXPECT_EQ(first(world.take_sent(), &Message::has_returned).returned().units_size(), 3);
+}
+
+TEST(StateMachine, UnitsOfAJobWhoseFilesAWorkerNeverHasFailAtOnce) {
+  constexpr uint64_t kOther = 8;
+  WorkerWorld world;
+  world.begin();
+  world.job(kOther);
+  world.lease(WorkerWorld::unit(0));
+  world.take_sent();
+  world.machine->files_failed(WorkerWorld::kJob, "never", FilesTrouble::hopeless, world.now);
+  EXPECT_EQ(first(world.take_sent(), &Message::has_failure).failure().reason(), "never");
+  world.lease(WorkerWorld::unit(8, 2));
+  EXPECT_EQ(first(world.take_sent(), &Message::has_failure).failure().reason(), "never");
+  EXPECT_EQ(world.ports.fetched.size(), 1U) << "nobody looks at so many files again";
+  EXPECT_TRUE(world.machine->empty());
+  world.lease(WorkerWorld::unit(16, 3, kOther));
+  EXPECT_EQ(world.ports.fetched.back(), kOther);
+  world.job();
+  world.lease(WorkerWorld::unit(8, 4));
+  EXPECT_EQ(world.ports.fetched.back(), WorkerWorld::kJob) << "it may have other files now";
 }
 
 TEST(StateMachine, AJobThatIsOverIsForgotten) {
