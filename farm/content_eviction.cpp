@@ -12,8 +12,10 @@
 #include <cstdint>
 #include <ctime>
 #include <functional>
+#include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -34,6 +36,7 @@ namespace {
 constexpr int64_t kPartialLife = 3 * 24 * 3600;  // s without a byte: an upload may rest a weekend
 constexpr int64_t kSweepEvery = 3600;            // s
 constexpr int64_t kPartialRest = 60;             // s without a byte, where room is wanted
+constexpr uint64_t kSpare = 16;                  // part of the budget that is free after eviction
 
 struct StoredFile {
   std::string path;
@@ -65,6 +68,18 @@ void list_files(const std::string& folder, std::vector<StoredFile>& files,
                      info.st_mtim.tv_sec});
   }
   ::closedir(open);
+}
+
+/// The number in the file; 0 where there is none. Wrong ones do no harm: see ContentStore::Total.
+uint64_t read_count(int file) {
+  uint64_t count = 0;
+  const auto bytes = std::as_writable_bytes(std::span(&count, 1));
+  const auto got = core::read_all_at(file, bytes, 0);
+  return got && *got == bytes.size() ? count : 0;
+}
+
+bool write_count(int file, uint64_t count) {
+  return core::write_all_at(file, std::as_bytes(std::span(&count, 1)), 0);
 }
 
 /// Removes `path` unless somebody holds a lock on it.
@@ -162,30 +177,57 @@ Status ContentStore::make_room(const std::string& begun, uint64_t bytes, bool* c
                              core::format_bytes(bytes), options_.folder,
                              core::format_bytes(options_.budget))};
   }
+  const core::MutexLock mine(room_mutex_);
   // One process at a time, so that two do not both evict for the same shortage.
   const std::string lock_path = options_.folder + "/lock";
   const core::Descriptor lock(::open(lock_path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0600));
   if (!lock.valid() || !core::lock_file(lock.get(), LOCK_EX, options_.lock_patience)) {
     return Error{"cannot lock " + lock_path + ": " + core::lock_reason(errno)};
   }
+  const uint64_t begun_by_all = read_count(lock.get());
+  const auto now = std::chrono::steady_clock::now();
+  bool known = total_ && now - total_->listed < options_.list_every;
+  if (known && begun_by_all >= total_->begun) {
+    total_->bytes += begun_by_all - std::exchange(total_->begun, begun_by_all);
+    known = total_->bytes + bytes <= options_.budget;
+  } else {
+    known = false;  // the count was lost
+  }
+  if (!known) {
+    const uint64_t used = evict(begun, expected_ + bytes);
+    total_ = Total{used - bytes, begun_by_all, now};
+    if (used > options_.budget) {
+      if (crowded != nullptr) *crowded = true;
+      return Error{fmt::format("the budget of {}, {}, is taken by files in use: {} more are needed",
+                               options_.folder, core::format_bytes(options_.budget),
+                               core::format_bytes(used - options_.budget))};
+    }
+  }
+  total_->bytes += bytes;
+  total_->begun += bytes;
+  // What others are not told of they find when they list.
+  if (bytes > 0) (void)write_count(lock.get(), total_->begun);
+  return {};
+}
+
+/// Lists all files, and evicts where they are too many. What they take with `used` bytes more, but
+/// for what there is of the unfinished file `begun`, which is among these.
+uint64_t ContentStore::evict(const std::string& begun, uint64_t used) {
   std::vector<StoredFile> files;
   list_files(options_.folder, files);
   list_files(options_.folder + "/partial", files);
-  // What there is of the file itself is among its bytes.
   std::erase_if(files, [&](const StoredFile& file) { return file.path == begun; });
-  uint64_t used = expected_ + bytes;
   for (const StoredFile& file : files) used += file.size;
+  if (used <= options_.budget) return used;
   std::sort(files.begin(), files.end(),
             [](const StoredFile& a, const StoredFile& b) { return a.used < b.used; });
+  // Some more than must go, so that a full store is not listed for each file that is written.
+  const uint64_t enough = options_.budget - options_.budget / kSpare;
   for (const StoredFile& file : files) {
-    if (used <= options_.budget) return {};
+    if (used <= enough) break;
     if (remove_if_free(file.path)) used -= file.size;
   }
-  if (used <= options_.budget) return {};
-  if (crowded != nullptr) *crowded = true;
-  return Error{fmt::format("the budget of {}, {}, is taken by files in use: {} more are needed",
-                           options_.folder, core::format_bytes(options_.budget),
-                           core::format_bytes(used - options_.budget))};
+  return used;
 }
 
 std::vector<std::string> ContentStore::names() const {

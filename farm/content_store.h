@@ -6,6 +6,7 @@
 #include <functional>
 #include <map>
 #include <memory>
+#include <optional>
 #include <set>
 #include <string>
 #include <string_view>
@@ -55,6 +56,12 @@ struct Uploader {
 ///
 /// Thread-safe. Several processes may share a folder. Bytes that were read stay valid when their
 /// file is evicted.
+///
+/// What all files take is not asked of the disk for each that is written: processes count in the
+/// folder's lock file the bytes that they have begun with, and what was found at the last listing
+/// with those that all have begun since is the most that there can be. The folder is listed again
+/// where that is too much, and every few seconds, for what nobody has counted (files that somebody
+/// put there, and what others had still to write of theirs at the last listing).
 class ContentStore {
  public:
   struct Options {
@@ -63,6 +70,8 @@ class ContentStore {
                           ///< nothing is ever evicted
     /// For a lock that another process has; whoever may read a file may lock it for ever.
     std::chrono::milliseconds lock_patience{5000};
+    /// How old the total of all files may be that the budget is held against.
+    std::chrono::milliseconds list_every{10'000};
   };
 
   static core::Result<std::unique_ptr<ContentStore>> open(const Options& options);
@@ -92,10 +101,11 @@ class ContentStore {
   /// Begins or resumes file `name` of `size` bytes: the writer's offset says what is there already
   /// of the same owner's. Of two that write the same file at once for one owner the second begins
   /// its own copy; the first that is whole and right becomes the file. With a budget, files that
-  /// were not used for longest make room; it is an error if those that are not pinned are too few.
-  /// `crowded` becomes whether the budget has no room for it, which is no fault of the disk.
+  /// were not used for longest make room, and some for later files; it is an error if those that
+  /// are not pinned are too few.
   /// Where `whose` has as many unfinished files as he may, those of his that rest for longest (a
   /// minute at least) make room. The store must outlive the writer.
+  /// `crowded` becomes whether the budget has no room for it, which is no fault of the disk.
   core::Result<ContentWriter> write(const std::string& name, uint64_t size,
                                     const Uploader& whose = {}, bool* crowded = nullptr);
 
@@ -145,6 +155,7 @@ class ContentStore {
   /// Evicts until `bytes` more fit, of which there are some in the unfinished file `begun` (empty:
   /// none).
   core::Status make_room(const std::string& begun, uint64_t bytes, bool* crowded = nullptr);
+  uint64_t evict(const std::string& begun, uint64_t used);
   void sweep_partials();
   /// Whether the uploader may have the unfinished file at `path` beside his others, some of which
   /// may have to go.
@@ -158,6 +169,14 @@ class ContentStore {
   std::atomic<uint64_t> expected_{0};   ///< bytes that this process' writers have still to write
   std::atomic<int64_t> next_sweep_{0};  ///< seconds of the steady clock
   std::atomic<uint64_t> commits_{0};
+  /// What all files take.
+  struct Total {
+    uint64_t bytes = 0;  ///< at most: what was found, and what processes have begun with since
+    uint64_t begun = 0;  ///< the folder's count of the latter, when it was looked at last
+    std::chrono::steady_clock::time_point listed;
+  };
+  core::Mutex room_mutex_;
+  std::optional<Total> total_ HYADES_GUARDED_BY(room_mutex_);
   core::Mutex partials_mutex_;
   /// Unfinished files that this process writes, by their path, and how large they will be.
   std::map<std::string, uint64_t> writing_ HYADES_GUARDED_BY(partials_mutex_);

@@ -2,11 +2,14 @@
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 
+#include <chrono>
 #include <ctime>
 #include <filesystem>
 #include <fstream>
+#include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include "tests/farm/content_testing.h"
 #include "tests/support/temp_folder.h"
@@ -136,6 +139,59 @@ TEST(ContentEviction, WhereRoomIsWantedUnfinishedFilesOfNobodyGoOldestFirst) {
   EXPECT_TRUE(fs::exists(path('d'))) << "its next piece may be on the way";
   EXPECT_TRUE(fs::exists(path('e'))) << "somebody writes it";
   EXPECT_TRUE(store->contains(whole, 1000));
+}
+
+std::unique_ptr<ContentStore> open_listed(const std::string& folder, uint64_t budget,
+                                          std::chrono::milliseconds list_every) {
+  ContentStore::Options options{folder, budget};
+  options.list_every = list_every;
+  auto store = ContentStore::open(options);
+  EXPECT_TRUE(store) << error_of(store);
+  return store ? std::move(*store) : nullptr;
+}
+
+TEST(ContentEviction, AStoreWithRoomIsNotListedForEachFile) {
+  const TempFolder folder;
+  const auto rarely = open_listed(folder.file("cache"), 10'000, std::chrono::hours(1));
+  const auto always = open_listed(folder.file("cache"), 10'000, std::chrono::milliseconds(0));
+  put(*rarely, text('a'));
+  // As nobody does who writes by a store: only who lists knows of it.
+  const std::string stray = folder.file("cache/" + name_of("stray"));
+  std::ofstream(stray) << text('s', 9500);
+  age(stray, 100);
+  put(*rarely, text('b'));
+  EXPECT_TRUE(fs::exists(stray));
+  put(*always, text('c'));
+  EXPECT_FALSE(fs::exists(stray)) << "in time it is found";
+}
+
+TEST(ContentEviction, WhatOthersWriteCountsThoughNobodyLists) {
+  const TempFolder folder;
+  const auto one = open_listed(folder.file("cache"), 10'000, std::chrono::hours(1));
+  const auto other = open_listed(folder.file("cache"), 10'000, std::chrono::hours(1));
+  for (int i = 0; i < 40; ++i) {
+    put(i % 3 == 0 ? *one : *other, text('a', 900) + std::to_string(i));
+    ASSERT_LE(one->used(), 10'000U) << i;
+  }
+}
+
+TEST(ContentEviction, AStoreWhoseCountWasLostIsListed) {
+  const TempFolder folder;
+  const auto store = open_listed(folder.file("cache"), 10'000, std::chrono::hours(1));
+  for (char c = 'a'; c < 'a' + 5; ++c) put(*store, text(c));
+  fs::remove(folder.file("cache/lock"));
+  for (char c = 'f'; c < 'f' + 6; ++c) put(*store, text(c));
+  EXPECT_LE(store->used(), 10'000U);
+}
+
+TEST(ContentEviction, AFullStoreGetsRoomForMoreThanOneFile) {
+  const TempFolder folder;
+  const auto store = open_listed(folder.file("cache"), 16'000, std::chrono::hours(1));
+  for (char c = 'a'; c < 'a' + 16; ++c) put(*store, text(c));
+  EXPECT_EQ(store->used(), 16'000U);
+  put(*store, text('z'));
+  EXPECT_EQ(store->used(), 15'000U);
+  EXPECT_TRUE(store->contains(name_of(text('z')), 1000));
 }
 
 TEST(ContentEviction, OtherPeoplesFilesStay) {
