@@ -4,25 +4,32 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <utility>
 
 #include <fmt/format.h>
 #include <grpcpp/channel.h>
 #include <grpcpp/client_context.h>
+#include <grpcpp/impl/rpc_method.h>
+#include <grpcpp/support/byte_buffer.h>
+#include <grpcpp/support/sync_stream.h>
 
 #include "core/base/hash.h"
 #include "farm/backoff.h"
 #include "farm/channel.h"
+#include "farm/message_bytes.h"
+#include "farm/part_count.h"
 #include "farm/wire.h"
 #include "farm/wire_status.h"
-#include "hyades/v1/assets.grpc.pb.h"
+#include "hyades/v1/assets.pb.h"
 
 namespace hyades::worker {
 namespace {
 
 using std::chrono::milliseconds;
 
+constexpr const char* kDownloadMethod = "/hyades.v1.Assets/Download";
 /// Jobs whose files are fetched at the same time.
 constexpr int kThreads = 4;
 constexpr milliseconds kFirstPause{200};
@@ -32,6 +39,11 @@ constexpr milliseconds kLocalPatience{5000};
 /// A download slower than this many bytes per millisecond is broken off and resumed.
 constexpr uint64_t kSlowest = 16;
 constexpr milliseconds kShortestDeadline{60'000};
+constexpr milliseconds kLongestDeadline = std::chrono::hours(6);  // whatever the size is said to be
+/// In a piece, of fields that it does not have now.
+constexpr uint64_t kMostPieceParts = 100;
+/// Pieces of a file that have no bytes.
+constexpr int kMostEmptyPieces = 100;
 
 /// Half of the files that this process may have open.
 size_t most_pins() {
@@ -41,6 +53,17 @@ size_t most_pins() {
 }
 
 std::string name_of(const v1::JobFile& file) { return farm::hex_from_wire(file.sha256()); }
+
+/// Reads a piece. Looked at before it is parsed: fields that no piece has, which are kept, take
+/// many times their bytes.
+core::Status read_piece(const grpc::ByteBuffer& bytes, v1::Chunk& piece) {
+  if (!farm::has_few_parts(bytes, *v1::Chunk::descriptor(), kMostPieceParts)) {
+    return core::Error{"a piece of too many parts came, or none that is known"};
+  }
+  const grpc::Status read = farm::parse(bytes, farm::kMaxMessageBytes, piece);
+  if (!read.ok()) return core::Error{read.error_message()};
+  return {};
+}
 
 /// What is wrong with a piece that comes for the writer.
 core::Status check_piece(const v1::Chunk& piece, const farm::ContentWriter& writer) {
@@ -316,24 +339,36 @@ AssetFetcher::Outcome AssetFetcher::download(Wanted& wanted, const v1::JobFile& 
     return local_trouble(writer.error().in(file.path()),
                          crowded ? FilesTrouble::job : FilesTrouble::machine);
   }
-  const auto stub = v1::Assets::NewStub(channel_);
   grpc::ClientContext context;
   {
     const core::MutexLock lock(mutex_);
-    farm::prepare(context, token_,
-                  std::max(kShortestDeadline, milliseconds(file.size() / kSlowest)));
+    const uint64_t longest = kLongestDeadline.count();
+    farm::prepare(
+        context, token_,
+        std::max(kShortestDeadline, milliseconds(std::min(file.size() / kSlowest, longest))));
     if (unwanted(wanted)) return Failure{"no longer wanted"};
     wanted.call = &context;
   }
   v1::DownloadRequest request;
   request.set_sha256(file.sha256());
   request.set_offset(writer->offset());
-  const auto stream = stub->Download(&context, request);
+  // As a stub does it, but for the bytes.
+  const grpc::internal::RpcMethod method(kDownloadMethod,
+                                         grpc::internal::RpcMethod::SERVER_STREAMING);
+  const std::unique_ptr<grpc::ClientReader<grpc::ByteBuffer>> stream(
+      grpc::internal::ClientReaderFactory<grpc::ByteBuffer>::Create(channel_.get(), method,
+                                                                    &context, request));
+  grpc::ByteBuffer bytes;
   v1::Chunk chunk;
+  int empty = 0;
   core::Status fits;  // what the coordinator sends
   core::Status kept;
-  while (kept && stream->Read(&chunk)) {
-    fits = check_piece(chunk, *writer);
+  while (kept && stream->Read(&bytes)) {
+    fits = read_piece(bytes, chunk);
+    if (fits) fits = check_piece(chunk, *writer);
+    if (fits && chunk.data().empty() && ++empty > kMostEmptyPieces) {
+      fits = core::Error{"pieces without bytes came"};
+    }
     if (!fits) break;
     kept = writer->append(std::as_bytes(std::span(chunk.data())));
   }

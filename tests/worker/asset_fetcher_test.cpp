@@ -266,6 +266,67 @@ TEST(AssetFetcher, ACacheThatIsMendedSoonIsTriedAgain) {
   EXPECT_EQ(reports.first(), expected);
 }
 
+/// Sends the same piece again and again.
+class EndlessAssets : public v1::Assets::Service {
+ public:
+  explicit EndlessAssets(v1::Chunk piece) : piece_(std::move(piece)) {
+    grpc::ServerBuilder builder;
+    builder.AddListeningPort("127.0.0.1:0", grpc::InsecureServerCredentials(), &port_);
+    builder.RegisterService(this);
+    server_ = builder.BuildAndStart();
+  }
+  ~EndlessAssets() override { server_->Shutdown(std::chrono::system_clock::now()); }
+  EndlessAssets(const EndlessAssets&) = delete;
+  EndlessAssets& operator=(const EndlessAssets&) = delete;
+
+  grpc::Status Download(grpc::ServerContext* /*context*/, const v1::DownloadRequest* /*request*/,
+                        grpc::ServerWriter<v1::Chunk>* writer) override {
+    while (writer->Write(piece_)) {
+    }
+    return grpc::Status::OK;
+  }
+
+  /// What a worker says that fetches a file of `size` bytes.
+  std::string answer(uint64_t size) const {
+    const test::TempFolder folder;
+    const auto store = farm::ContentStore::open({folder.file("cache"), 0});
+    EXPECT_TRUE(store.ok());
+    Reports reports;
+    AssetFetcher fetcher(grpc::CreateChannel("127.0.0.1:" + std::to_string(port_),
+                                             grpc::InsecureChannelCredentials()),
+                         "", **store, reports, seconds(60));
+    v1::JobSpec spec = spec_of(kSmall);
+    spec.mutable_files(0)->set_size(size);
+    fetcher.fetch(1, spec);
+    return reports.next();
+  }
+
+ private:
+  const v1::Chunk piece_;
+  int port_ = 0;
+  std::unique_ptr<grpc::Server> server_;
+};
+
+TEST(AssetFetcher, PiecesWithoutBytesAreNoFile) {
+  const EndlessAssets assets{v1::Chunk()};
+  EXPECT_EQ(assets.answer(uint64_t{1} << 62U),
+            "job: file cannot be fetched: pieces without bytes came");
+}
+
+/// Each would take many times its bytes once it is parsed.
+TEST(AssetFetcher, FieldsThatNoPieceHasAreNotParsed) {
+  v1::Chunk piece;
+  piece.set_data(kSmall);
+  auto& fields = *piece.GetReflection()->MutableUnknownFields(&piece);
+  for (int i = 0; i < 100; ++i) fields.AddVarint(1000, 1);
+  // As many are known to a later coordinator, perhaps; then it is the second piece that fits not.
+  EXPECT_EQ(EndlessAssets(piece).answer(kSmall.size()),
+            "job: file cannot be fetched: a piece from byte 0 came, 12 was expected");
+  fields.AddVarint(1000, 1);
+  EXPECT_EQ(EndlessAssets(piece).answer(kSmall.size()),
+            "job: file cannot be fetched: a piece of too many parts came, or none that is known");
+}
+
 /// Lowers the number of files that this process may have open while it lives.
 class FewOpenFiles {
  public:
