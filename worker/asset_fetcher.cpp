@@ -187,9 +187,8 @@ AssetFetcher::Outcome AssetFetcher::keep(const Digests& files) {
                    FilesTrouble::hopeless};
   }
   const core::MutexLock lock(mutex_);
-  const auto others = static_cast<size_t>(
-      std::count_if(files.begin(), files.end(),
-                    [this](const core::Sha256& file) { return !kept_.contains(file); }));
+  size_t others = 0;
+  for (const core::Sha256& file : files) others += kept_.contains(file) ? 0 : 1;
   if (kept_.size() + others > most_pins_) {
     return Failure{
         fmt::format("the job has {} files that are not in use; this worker can keep {} at once "
