@@ -68,8 +68,15 @@ int fail(const std::string& message) {
   return kBadInput;
 }
 
-/// Why films are not those of the job as it stands here; empty: they are.
-std::string another_picture(const core::FilmInfo& info, const core::Job& job) {
+/// What of a film's frame is not as in the job as it stands here; empty: nothing that a person
+/// would see at once.
+std::string other_frame(const core::FilmInfo& info, const core::Job& job) {
+  if (info.width != job.film.width || info.height != job.film.height) {
+    return fmt::format(
+        "its films are of {} x {} pixels, the job's frames have {} x {}; a render with --size or "
+        "--scale is finished by a job of that size",
+        info.width, info.height, job.film.width, job.film.height);
+  }
   if (info.crop != core::render_window(job.film)) {
     return "its films are of another part of the frame (--crop) than the job renders";
   }
@@ -88,13 +95,17 @@ int finish_frame(const Options& options, const std::vector<std::string>& films,
   const auto whole = join_films(films);
   if (!whole) return fail(whole.error().message);
   const int32_t frame = whole->info.frame;
+  const std::string other = other_frame(whole->info, job);
+  if (!other.empty() && whole->info.job_name == job.name) {
+    return fail("frame " + std::to_string(frame) + ": " + other);
+  }
+  if (const auto ours = frames.check_picture(whole->info); !ours) {
+    return fail(ours.error().message);
+  }
   if (const std::string missing = what_is_missing(*whole); !missing.empty()) {
     std::fprintf(stderr, "frame %d: %s are there; missing: %s\n", frame, share_held(*whole).c_str(),
                  missing.c_str());
     return 1;
-  }
-  if (const std::string other = another_picture(whole->info, job); !other.empty()) {
-    return fail("frame " + std::to_string(frame) + ": " + other);
   }
   if (const auto written = frames.write_outputs_of(*whole); !written) {
     return fail(written.error().message);

@@ -108,7 +108,9 @@ std::string JobFrames::below_folder(const std::string& path) const {
 
 core::Status JobFrames::load_display() {
   if (const auto& color = loaded_.job.color) {
-    const auto folder = std::filesystem::path(loaded_.job.file).parent_path();
+    // The job of a .blend lies in a folder of its own.
+    const std::string file = loaded_.blend ? loaded_.blend->path() : loaded_.job.file;
+    const auto folder = std::filesystem::path(file).parent_path();
     auto display = core::open_display_transform((folder / color->config).string(), *color);
     if (!display)
       return core::Error{core::Diagnostic{color->where, display.error().message}.to_string()};
@@ -150,20 +152,22 @@ core::Status JobFrames::finish(int32_t frame, const core::Film& film) {
   return core::write_film_exr(film_path(frame), {info, film});
 }
 
+core::Status JobFrames::check_picture(const core::FilmInfo& info) const {
+  if (core::render_key(loaded_.job, info.frame, assets_) == info.render_key) return {};
+  if (info.job_name != loaded_.job.name) {
+    return core::Error{
+        fmt::format("frame {}: its films are of another picture: of the job '{}', not of '{}'",
+                    info.frame, core::printable(info.job_name), loaded_.job.name)};
+  }
+  return core::Error{fmt::format(
+      "frame {}: its films are of another picture: what decides the pixels of {} is not what it "
+      "was (or another version of Hyades rendered them)",
+      info.frame, loaded_.job.file)};
+}
+
 core::Status JobFrames::write_outputs_of(const core::FilmFile& file) {
   const int32_t frame = file.info.frame;
-  if (core::render_key(loaded_.job, frame, assets_) != file.info.render_key) {
-    if (file.info.job_name != loaded_.job.name) {
-      return core::Error{
-          fmt::format("frame {}: its films are of another picture: of the job '{}', "
-                      "not of '{}'",
-                      frame, core::printable(file.info.job_name), loaded_.job.name)};
-    }
-    return core::Error{fmt::format(
-        "frame {}: its films are of another picture: what decides the pixels of {} is not what "
-        "it was (or another version of Hyades rendered them)",
-        frame, loaded_.job.file)};
-  }
+  if (auto ours = check_picture(file.info); !ours) return ours;
   if (auto written = write_pictures(file.info, file.film); !written) return written;
   if (!options_.write_films) return {};
   return core::write_film_exr(film_path(frame), file);

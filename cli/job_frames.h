@@ -67,6 +67,9 @@ class JobFrames : public coordinator::FrameSource, public coordinator::FrameSink
   core::Status finish(int32_t frame, const core::Film& film) override;
   bool outputs_exist(int32_t frame) override;
 
+  /// Whether a film is one of this job as it stands here, whatever the job is called.
+  core::Status check_picture(const core::FilmInfo& info) const;
+
   /// Writes the outputs (and the film) of a frame of a film that others may have rendered. An error
   /// where the film is not of this job as it is.
   core::Status write_outputs_of(const core::FilmFile& file);

@@ -41,6 +41,9 @@ class CommandLine(AddOnTest):
         return run.stderr
 
     def test_a_still_scene_is_rendered_as_one_picture(self) -> None:
+        # Deeper than the folder of the job that is made of it, which names Blender's colour configuration.
+        self.blend = self.folder / "a/folder/within/folders/film.blend"
+        self.blend.parent.mkdir(parents=True)
         self.hyades("render", self.save(), "-q")
         there = hyades.Picture.read(self.folder / "film_.png").array
         job = self.folder / "job.yaml"
