@@ -89,8 +89,10 @@ void print_failure(const RenderOptions& options, const FilmRoom& room, const std
 }
 
 int report(const RenderOptions& options, const FilmRoom& room, const JobFrames& frames,
-           const std::vector<int32_t>& numbers, const coordinator::LocalOutcome& outcome,
-           const coordinator::Progress& progress, const JsonReport& json) {
+           const std::vector<int32_t>& numbers, const coordinator::LocalRun& run,
+           const JsonReport& json) {
+  const coordinator::LocalOutcome outcome = run.outcome();
+  const coordinator::Progress progress = run.progress();
   const RunTotals totals = frames.totals();
   print_bad_samples(totals, options.path);
   for (const coordinator::FrameFailure& failure : outcome.failures) {
@@ -107,18 +109,20 @@ int report(const RenderOptions& options, const FilmRoom& room, const JobFrames& 
   }
   const std::vector<int32_t> written = written_frames(numbers, outcome);
   for (const int32_t frame : written) json.written(frame, frames.output_paths(frame, false));
-  if (!options.quiet && !written.empty() && totals.counters.samples > 0) {
+  if (!options.quiet && !written.empty() && progress.frames_done > run.before().frames_done) {
     const std::string others =
         outcome.frames_done > 1 ? fmt::format(" ... ({} frames)", outcome.frames_done) : "";
     for (const std::string& path : frames.output_paths(written.front(), false)) {
       std::fprintf(stderr, "wrote %s%s\n", path.c_str(), others.c_str());
     }
-    const auto samples = static_cast<double>(totals.counters.samples);
+  }
+  const auto samples = static_cast<double>(totals.counters.samples);
+  if (!options.quiet && !written.empty() && samples > 0) {
     std::fprintf(stderr, "%s, %s, %.2f Mrays/s, %.1f rays per sample\n",
                  core::format_duration(progress.elapsed).c_str(),
                  core::format_sample_rate(samples / progress.elapsed).c_str(),
                  static_cast<double>(totals.counters.rays) / progress.elapsed * 1e-6,
-                 samples > 0 ? static_cast<double>(totals.counters.rays) / samples : 0.0);
+                 static_cast<double>(totals.counters.rays) / samples);
   }
   return outcome.failures.empty() ? 0 : 1;
 }
@@ -307,11 +311,11 @@ int run_frames(const RenderOptions& options, const core::Job& job, const FilmRoo
   for (const std::string& problem : run.log_problems()) {
     std::fprintf(stderr, "%s\n", problem.c_str());
   }
-  if (!options.quiet) note_begun(run.progress());
+  if (!options.quiet) note_begun(run.before());
   JsonReport json(options.json);
   const bool to_its_end = follow(options, run, job.name, viewer ? &*viewer : nullptr, json);
+  int status = report(options, room, frames, numbers, run, json);
   const coordinator::LocalOutcome outcome = run.outcome();
-  int status = report(options, room, frames, numbers, outcome, run.progress(), json);
   if (outcome.complete && outcome.failures.empty()) {
     status = finish_run(options, job, numbers, kept, json);
   }

@@ -184,7 +184,8 @@ void declare_results(CLI::App& app, RenderOptions& options) {
       });
   auto* resume = app.add_flag(
       "--resume", options.resume,
-      "go on with what an interrupted run has kept, as is done anyway, or else render nothing");
+      "go on with what an interrupted run has kept, as is done anyway; where that is of another "
+      "picture render nothing, though its frames are finished");
   app.add_flag("--restart", options.restart,
                "render from the beginning, whatever an interrupted run has kept")
       ->excludes(resume);

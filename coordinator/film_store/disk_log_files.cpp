@@ -173,7 +173,8 @@ class DiskFiles final : public LogFiles {
       std::string text(holder, static_cast<size_t>(std::max<ssize_t>(got, 0)));
       text.erase(std::find(text.begin(), text.end(), '\n'), text.end());
       return Error{path + " is held by another process" +
-                   (text.empty() ? std::string() : " (number " + text + ")")};
+                   (text.empty() ? std::string() : " (number " + text + ")") +
+                   ", which renders or serves from this folder"};
     }
     // Who holds it, for the message above; the lock works without.
     const std::string self = std::to_string(::getpid()) + "\n";

@@ -140,6 +140,9 @@ class Reader {
   /// The first frame that is wanted and whose films are of other pixels.
   std::optional<int32_t> other_pixels() const { return other_pixels_; }
 
+  /// Whether a frame, wanted or not, has films and is not finished.
+  bool has_unfinished() const { return !unfinished_.empty(); }
+
  private:
   core::Status read_cut(std::span<const std::byte> bytes) {
     if (bytes.size() != 24) return core::Error{"the record of the cut has a wrong length"};
@@ -155,6 +158,7 @@ class Reader {
     const auto frame = static_cast<int32_t>(get(bytes, 0));
     // A film after the end means that the frame was begun again, because its outputs were gone.
     contents_.finished.erase(frame);
+    unfinished_.insert(frame);
     if (!is_wanted(frame) || !has_key(frame, get_key(bytes, 4))) return {};
     auto film = core::decode_film(bytes.subspan(kFrameAndKey));
     if (!film) return film.error();
@@ -176,6 +180,7 @@ class Reader {
     std::string worker_class(length, '\0');
     for (size_t i = 0; i < length; ++i) worker_class[i] = std::to_integer<char>(bytes[kFixed + i]);
     contents_.finished.erase(frame);
+    unfinished_.insert(frame);
     if (!is_wanted(frame) || !has_key(frame, get_key(bytes, 4))) return {};
     auto film = core::decode_film(bytes.subspan(kFixed + length));
     if (!film) return film.error();
@@ -211,6 +216,7 @@ class Reader {
     const auto frame = static_cast<int32_t>(get(bytes, 0));
     const FinishedRecord finished{get_key(bytes, 4), get_rect(bytes, kFrameAndKey)};
     contents_.finished.erase(frame);
+    unfinished_.erase(frame);
     if (filter_.frames.contains(frame)) {
       if (!has_key(frame, finished.key)) return {};
       // The outputs show another crop now, but the films may be of use.
@@ -274,6 +280,7 @@ class Reader {
   const LogFilter& filter_;
   std::map<int32_t, FrameKey> keys_;  ///< of the frames met
   std::optional<int32_t> other_pixels_;
+  std::set<int32_t> unfinished_;
   bool other_regions_ = false;  ///< films may reach beyond the region, or hold parts of its tiles
 };
 
@@ -343,6 +350,7 @@ core::Result<LogContents> read_log(FilmLog& log, const LogFilter& filter) {
   if (!report) return report.error();
   contents.bytes = report->bytes;
   contents.problems = std::move(report->problems);
+  contents.unfinished = reader.has_unfinished();
   if (contents.cut.tile_size == 0) return contents;
   if (contents.cut.samples != filter.samples) {
     contents.other_picture =

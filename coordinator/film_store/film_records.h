@@ -67,6 +67,7 @@ struct LogContents {
   bool disputed = false;              ///< some of these films may be wrong
   uint64_t bytes = 0;                 ///< of all records
   bool others = false;                ///< there are films of frames that were not asked for
+  bool unfinished = false;            ///< there are films of frames that are not finished
   std::vector<std::string> problems;  ///< damage, in words; costs rendering again
   /// Why the films of these frames have other pixels: another key, or another number of samples.
   /// Empty: they have not. Else the films are not to be used.

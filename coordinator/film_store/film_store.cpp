@@ -107,6 +107,10 @@ core::Result<LogContents> FilmStore::open() {
   if (!useless.empty() && options_.kept == KeptFilms::require) {
     return core::Error{useless}.in(options_.folder);
   }
+  if (!useless.empty() && contents->unfinished) {
+    return core::Error{useless + ": --restart gives them up, another --output leaves them"}.in(
+        options_.folder);
+  }
   if (!contents->empty && contents->cut.tile_size == 0) {
     // Its beginning is damaged: without the cut the films cannot be told apart into units.
     useless = "how the frames were cut is lost";

@@ -39,8 +39,9 @@ enum class FrameEnd : uint8_t {
 
 /// What becomes of films that an earlier run has kept.
 enum class KeptFilms : uint8_t {
-  erase,    ///< they go
-  use,      ///< they are gone on with; where they are of other pictures, they go
+  erase,  ///< they go
+  use,    ///< they are gone on with; where they are of other pictures, those of finished frames go,
+          ///< and where a frame is not finished, nothing begins
   require,  ///< they are gone on with; where they are of other pictures, nothing begins
 };
 

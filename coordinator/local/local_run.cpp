@@ -69,6 +69,7 @@ core::Status LocalRun::start() {
   {
     const core::MutexLock lock(mutex_);
     job = recover(*contents);
+    before_ = progress_;
   }
   if (core::Status kept = film_store_.start(plan_.tile_size); !kept) return kept;
   for (int i = 0; i < plan_.threads; ++i) {

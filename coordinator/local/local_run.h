@@ -48,6 +48,9 @@ class LocalRun : private FilmStore::Owner {
   /// for all that matters is durable and outputs appear whole or not at all.
   bool wait_for(Duration duration);
 
+  /// How far earlier runs had come. Valid after start().
+  const Progress& before() const { return before_; }
+
   /// How far the run is now.
   Progress progress() const;
 
@@ -124,6 +127,7 @@ class LocalRun : private FilmStore::Owner {
   FrameSink& sink_;
   FilmAudience* const audience_;
   std::vector<std::string> log_problems_;
+  Progress before_;
   std::atomic<bool> stop_{false};  ///< seen by whoever renders or loads
 
   /// Everything up to the film store.
