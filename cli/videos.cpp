@@ -1,6 +1,8 @@
 #include "cli/videos.h"
 
 #include <cstdio>
+#include <filesystem>
+#include <system_error>
 
 #include "cli/command_line.h"
 #include "cli/interrupt.h"
@@ -29,13 +31,23 @@ bool make_videos(const core::Job& job, const std::string& folder,
   bool all = true;
   for (const core::VideoDesc& video : job.videos) {
     const std::string file = core::video_file(video, frames);
+    const core::VideoDesc at_hand = with_pictures_at_hand(job, video, frames);
+    std::error_code none;
+    if (!core::missing_pictures(at_hand, frames).empty() &&
+        std::filesystem::exists(std::filesystem::path(folder) / file, none)) {
+      std::fprintf(stderr,
+                   "%s/%s is there, and its pictures are gone since: 'hyades render' with "
+                   "--restart makes it anew\n",
+                   folder.c_str(), file.c_str());
+      all = false;
+      continue;
+    }
     if (!quiet) {
       std::fprintf(stderr, "making %s/%s of %s\n", folder.c_str(), file.c_str(),
                    core::counted(frames.numbers.size(), "frame").c_str());
     }
     core::VideoPatience patience;
     patience.stop = interrupted;
-    const core::VideoDesc at_hand = with_pictures_at_hand(job, video, frames);
     if (!quiet && at_hand.pictures != video.pictures) {
       std::fprintf(stderr, "of %s, which look the same as its own pictures\n",
                    at_hand.pictures.c_str());
