@@ -1,5 +1,7 @@
 #include <cstdio>
+#include <filesystem>
 #include <string>
+#include <system_error>
 
 #include <CLI/CLI.hpp>
 
@@ -25,18 +27,24 @@ int convert(const ConvertOptions& options) {
     std::fprintf(stderr, "hyades convert: %s\n", message.c_str());
     return kExitRefused;
   };
+  std::error_code none;
+  if (std::filesystem::equivalent(options.input, options.shown.output.file, none)) {
+    return refuse(options.input + ": would be replaced by itself, expected another file as -o");
+  }
   const auto picture = core::read_image_file(options.input);
   if (!picture) return refuse(picture.error().message);
   core::OutputDesc output = options.shown.desc(options.input);
   if (options.layer != "beauty") output.layers = {options.layer};
   const auto written = core::write_output(output, *picture, output.file);
-  return written ? 0 : refuse(written.error().in(options.input).message);
+  if (!written) return refuse(written.error().in(options.input).message);
+  std::fprintf(stderr, "wrote %s\n", output.file.c_str());
+  return 0;
 }
 
 }  // namespace
 
 int convert_command(int argc, char** argv) {
-  CLI::App app("writes a picture as another one, as a display shows it", "hyades convert");
+  CLI::App app("Writes a picture as another one, as a display shows it", "hyades convert");
   ConvertOptions options;
   app.add_option("picture", options.input, "EXR, a film EXR, or any other picture")->required();
   declare_shown_output(app, options.shown);

@@ -11,6 +11,8 @@
 
 #include "cli/command_line.h"
 #include "core/base/atomic_file.h"
+#include "core/base/printable.h"
+#include "core/job/output_path.h"
 
 namespace hyades::cli {
 namespace {
@@ -106,6 +108,11 @@ int new_command(int argc, char** argv) {
   if (!is_plain(name)) {
     std::fprintf(stderr, "hyades new: '%s': expected letters, digits, '-', '_' and '.' as a name\n",
                  name.c_str());
+    return kExitRefused;
+  }
+  const std::string extension = core::file_extension(file);
+  if (extension != ".yaml" && extension != ".yml") {
+    std::fprintf(stderr, "hyades new: %s: expected NAME.yaml\n", core::printable(file).c_str());
     return kExitRefused;
   }
   std::error_code none;

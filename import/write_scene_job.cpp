@@ -54,7 +54,18 @@ class Writer {
         importing_(*disk_, request.missing,
                    request.follow_links ? SceneLinks() : SceneLinks(folder_)) {}
 
+  /// Leaves nothing of it where it fails.
   Result<WrittenSceneJob> write() {
+    auto written = write_all();
+    if (written) return written;
+    std::error_code ignored;
+    for (const std::string& file : saved_) std::filesystem::remove(file, ignored);
+    std::filesystem::remove(in_folder(made_), ignored);  // only where it is empty
+    return written;
+  }
+
+ private:
+  Result<WrittenSceneJob> write_all() {
     if (auto free = check_free(request_.job); !free) return free.error();
     // Paths lead through it.
     if (auto made = make_folder(folder_); !made) return made.error();
@@ -75,7 +86,6 @@ class Writer {
     return std::move(written_);
   }
 
- private:
   Result<SceneJob> read() {
     SceneJobRequest how;
     how.scene = reference_from(request_.scene, folder_);

@@ -22,9 +22,13 @@ void describe_test(const ZTest& test, const char* what, std::string& text) {
   }
   fmt::format_to(out,
                  "z-test of {}: {} beyond 3 sigma (0.270 % expected), smallest p {:.3g} (Sidak, {} "
-                 "tests) in {} at {},{}\n",
-                 what, percent(test.share_above_3), test.smallest_p, format_count(test.tests),
-                 test.where.channel, test.where.x, test.where.y);
+                 "tests)",
+                 what, percent(test.share_above_3), test.smallest_p, format_count(test.tests));
+  // Nowhere in pictures that are the same.
+  if (!test.where.channel.empty()) {
+    fmt::format_to(out, " in {} at {},{}", test.where.channel, test.where.x, test.where.y);
+  }
+  fmt::format_to(out, "\n");
 }
 
 }  // namespace

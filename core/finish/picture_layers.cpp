@@ -9,6 +9,7 @@
 #include <cstdint>
 
 #include "core/base/hash.h"
+#include "core/base/text.h"
 #include "core/base/vec.h"
 #include "core/film/layout.h"
 #include "core/finish/cryptomatte.h"
@@ -125,7 +126,8 @@ Result<LayerView> view_layer(const Image& picture, const std::string& layer) {
     if (sources.size() == 3) break;
   }
   if (sources.empty() || std::find(sources.begin(), sources.end(), -1) != sources.end())
-    return Error{fmt::format("the film holds no layer '{}'", layer)};
+    return Error{
+        fmt::format("there is no layer '{}' in it{}", layer, did_you_mean(layer, layer_names()))};
   const size_t stride = picture.channels.size();
   const size_t pixels = picture.data.size() / stride;
   const auto value = [&](size_t pixel) {
