@@ -194,6 +194,8 @@ core::Status JobRecovery::recover(uint64_t id) {
   if (!active) return active.error();
   (*active)->id = JobId{id};
   (*active)->core_ns_stored = (*active)->stored.core_ns;
+  jobs_.note(**active, v1::LOG_LEVEL_INFO, std::nullopt, {},
+             "goes on: the coordinator has been started again");
   auto restored = restore_frames(**active);
   if (!restored) return restored.error();
   return start(std::move(*active), std::move(*restored));

@@ -25,9 +25,18 @@ grpc::Status check_priority(int priority) {
   return {grpc::StatusCode::INVALID_ARGUMENT, "priority: expected -1000000 to 1000000"};
 }
 
-void JobSteering::pause(uint64_t id, JobReply then) { set_paused(id, true, std::move(then)); }
+void JobSteering::pause(uint64_t id, const std::string& by, JobReply then) {
+  set_paused(id, true, by, std::move(then));
+}
 
-void JobSteering::resume(uint64_t id, JobReply then) { set_paused(id, false, std::move(then)); }
+void JobSteering::resume(uint64_t id, const std::string& by, JobReply then) {
+  set_paused(id, false, by, std::move(then));
+}
+
+/// Notes in the job's log what somebody has done.
+void JobSteering::note(ActiveJob& active, const std::string& what, const std::string& by) {
+  jobs_.note(active, v1::LOG_LEVEL_INFO, std::nullopt, {}, by.empty() ? what : what + " by " + by);
+}
 
 void JobSteering::note_watched(uint64_t id, int32_t frame) {
   Turn turn(dispatcher_);
@@ -35,22 +44,22 @@ void JobSteering::note_watched(uint64_t id, int32_t frame) {
   if (active != nullptr && !active->ending) turn.tell(FrameWatched{active->id, frame});
 }
 
-void JobSteering::set_paused(uint64_t id, bool paused, JobReply then) {
+void JobSteering::set_paused(uint64_t id, bool paused, const std::string& by, JobReply then) {
   change(id, std::move(then), [&](ActiveJob& active, Turn& turn) HYADES_REQUIRES(state_lock) {
     const StoredState wanted = paused ? StoredState::paused : StoredState::running;
     if (active.stored.state == wanted) return;
     active.stored.state = wanted;
-    jobs_.note(active, v1::LOG_LEVEL_INFO, std::nullopt, {}, paused ? "paused" : "resumed");
+    note(active, paused ? "paused" : "resumed", by);
     turn.tell(paused ? Event(JobPaused{active.id}) : Event(JobResumed{active.id}));
   });
 }
 
-void JobSteering::set_priority(uint64_t id, int priority, JobReply then) {
+void JobSteering::set_priority(uint64_t id, int priority, const std::string& by, JobReply then) {
   if (const grpc::Status sane = check_priority(priority); !sane.ok()) return then(sane, {});
   change(id, std::move(then), [&](ActiveJob& active, Turn& turn) HYADES_REQUIRES(state_lock) {
     if (active.stored.priority == priority) return;
     active.stored.priority = priority;
-    jobs_.note(active, v1::LOG_LEVEL_INFO, std::nullopt, {}, fmt::format("priority {}", priority));
+    note(active, fmt::format("priority changed to {}", priority), by);
     turn.tell(JobReprioritised{active.id, priority});
   });
 }
@@ -73,7 +82,7 @@ void JobSteering::change(uint64_t id, JobReply then,
   if (!open) then(why_not_open(*context_.store, id), {});
 }
 
-void JobSteering::cancel(uint64_t id, JobReply then) {
+void JobSteering::cancel(uint64_t id, const std::string& by, JobReply then) {
   bool open = false;
   {
     Turn turn(dispatcher_);
@@ -82,6 +91,7 @@ void JobSteering::cancel(uint64_t id, JobReply then) {
     if (open) {
       // The end is stored by the job's tasks; to answer is to promise.
       records_.when_stored(id, then);
+      if (!active->ending) note(*active, "cancelled", by);
       if (active->making_videos) {
         videos_.cancel(*active);
       } else {

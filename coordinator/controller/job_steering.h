@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <string>
 
 #include <grpcpp/support/status.h>
 
@@ -23,7 +24,8 @@ grpc::Status why_not_open(JobStore& store, uint64_t job);
 /// What clients want of open jobs. Each function calls `then` exactly once, perhaps by another
 /// thread and at the latest when the controller stops: when the change is stored, or after half a
 /// second with UNAVAILABLE (it holds, and will be stored). For a job that is not open they may wait
-/// for the store. Thread-safe.
+/// for the store. `by`, whose wish it is, goes into the job's log; empty: nobody in particular's.
+/// Thread-safe.
 class JobSteering {
  public:
   JobSteering(ControllerContext& context, Dispatcher& dispatcher, JobTable& jobs,
@@ -36,19 +38,23 @@ class JobSteering {
         videos_(videos) {}
 
   /// The job's units are leased no more until it is resumed.
-  void pause(uint64_t job, JobReply then) HYADES_EXCLUDES(state_lock);
+  void pause(uint64_t job, const std::string& by, JobReply then) HYADES_EXCLUDES(state_lock);
   /// Ends a pause.
-  void resume(uint64_t job, JobReply then) HYADES_EXCLUDES(state_lock);
+  void resume(uint64_t job, const std::string& by, JobReply then) HYADES_EXCLUDES(state_lock);
   /// The job ends as it is; one that waits to be recovered, too.
-  void cancel(uint64_t job, JobReply then) HYADES_EXCLUDES(state_lock);
+  void cancel(uint64_t job, const std::string& by, JobReply then) HYADES_EXCLUDES(state_lock);
   /// Somebody looks at the picture of a frame in work: for some seconds all of it is refined
   /// together. Nobody is answered.
   void note_watched(uint64_t job, int32_t frame) HYADES_EXCLUDES(state_lock);
   /// INVALID_ARGUMENT as check_priority() has it.
-  void set_priority(uint64_t job, int priority, JobReply then) HYADES_EXCLUDES(state_lock);
+  void set_priority(uint64_t job, int priority, const std::string& by, JobReply then)
+      HYADES_EXCLUDES(state_lock);
 
  private:
-  void set_paused(uint64_t job, bool paused, JobReply then) HYADES_EXCLUDES(state_lock);
+  void set_paused(uint64_t job, bool paused, const std::string& by, JobReply then)
+      HYADES_EXCLUDES(state_lock);
+  void note(ActiveJob& active, const std::string& what, const std::string& by)
+      HYADES_REQUIRES(state_lock);
   void change(uint64_t job, JobReply then, const std::function<void(ActiveJob&, Turn&)>& what)
       HYADES_EXCLUDES(state_lock);
   grpc::Status cancel_waiting(uint64_t job, v1::Job& now) HYADES_EXCLUDES(state_lock);

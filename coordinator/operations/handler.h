@@ -32,6 +32,7 @@ using Respond = std::function<void(const grpc::Status&, const Response&)>;
 ///   grpc::Status f(Backend&, Request&, Response&)
 ///   grpc::Status f(Backend&, Request&, Response&, const Caller&)
 ///   void f(Backend&, Request&, const Respond<Response>&)       which may respond later
+///   void f(Backend&, Request&, const Respond<Response>&, const Caller&)
 ///
 /// The first may have another beside it that answers out of memory, or says no where it would have
 /// to wait: bool known(Backend&, Request&, Response&).
@@ -60,9 +61,15 @@ class Handler {
   template <class Request, class Response>
   Handler(void (*f)(Backend&, Request&, const Respond<Response>&))
       : Handler(types<Request, Response>()) {
-    later_ = [f](Backend& at, Message& request, const Respond<Message>& respond) {
+    later_ = [f](Backend& at, Message& request, const Respond<Message>& respond, const Caller&) {
       f(at, static_cast<Request&>(request), respond);
     };
+  }
+  template <class Request, class Response>
+  Handler(void (*f)(Backend&, Request&, const Respond<Response>&, const Caller&))
+      : Handler(types<Request, Response>()) {
+    later_ = [f](Backend& at, Message& request, const Respond<Message>& respond,
+                 const Caller& caller) { f(at, static_cast<Request&>(request), respond, caller); };
   }
 
   /// Whether there is a function.
@@ -96,7 +103,7 @@ class Handler {
   Types types_;
   std::function<grpc::Status(Backend&, Message&, Message&, const Caller&)> now_;
   std::function<bool(Backend&, Message&, Message&)> known_;
-  std::function<void(Backend&, Message&, const Respond<Message>&)> later_;
+  std::function<void(Backend&, Message&, const Respond<Message>&, const Caller&)> later_;
 };
 
 }  // namespace hyades::coordinator

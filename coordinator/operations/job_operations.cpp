@@ -155,16 +155,17 @@ JobReply reply(const Respond<v1::JobResponse>& respond) {
 }
 
 template <auto what>
-void steer_job(Backend& at, const v1::JobRequest& request,
-               const Respond<v1::JobResponse>& respond) {
-  (at.controller.steering().*what)(request.job(), reply(respond));
+void steer_job(Backend& at, const v1::JobRequest& request, const Respond<v1::JobResponse>& respond,
+               const Caller& caller) {
+  (at.controller.steering().*what)(request.job(), caller.name, reply(respond));
 }
 
 const BodyForm kPriority = {{{"priority", true}}, "expected {\"priority\": a whole number}"};
 
 void set_priority(Backend& at, const v1::SetPriorityRequest& request,
-                  const Respond<v1::JobResponse>& respond) {
-  at.controller.steering().set_priority(request.job(), request.priority(), reply(respond));
+                  const Respond<v1::JobResponse>& respond, const Caller& caller) {
+  at.controller.steering().set_priority(request.job(), request.priority(), caller.name,
+                                        reply(respond));
 }
 
 void retry(Backend& at, const v1::JobRequest& request, const Respond<v1::JobResponse>& respond) {

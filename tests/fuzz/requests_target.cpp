@@ -44,7 +44,7 @@ bool try_submission(const v1::SubmitRequest& request) {
   if (!controller.queries().get(job, std::nullopt, got).ok()) std::abort();
   (void)farm::to_json(got.job());
   if (response.existed() || job == farm().job) return true;
-  if (!told([&](JobReply then) { controller.steering().cancel(job, std::move(then)); }).ok())
+  if (!told([&](JobReply then) { controller.steering().cancel(job, {}, std::move(then)); }).ok())
     return true;
   (void)controller.jobs().remove(job);
   return true;
@@ -54,9 +54,9 @@ bool try_orders(const v1::JobRequest& request) {
   Controller& controller = *farm().controller;
   const uint64_t job = request.job();
   const bool paused =
-      told([&](JobReply then) { controller.steering().pause(job, std::move(then)); }).ok();
+      told([&](JobReply then) { controller.steering().pause(job, {}, std::move(then)); }).ok();
   if (paused &&
-      !told([&](JobReply then) { controller.steering().resume(job, std::move(then)); }).ok()) {
+      !told([&](JobReply then) { controller.steering().resume(job, {}, std::move(then)); }).ok()) {
     std::abort();
   }
   v1::ExplainResponse why;
@@ -216,7 +216,7 @@ bool try_input(std::string_view input) {
     case 'p':
       return parsed<v1::SetPriorityRequest>(bytes, [&](const v1::SetPriorityRequest& request) {
         return told([&](JobReply then) {
-                 controller.steering().set_priority(request.job(), request.priority(),
+                 controller.steering().set_priority(request.job(), request.priority(), {},
                                                     std::move(then));
                })
             .ok();
