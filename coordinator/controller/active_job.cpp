@@ -159,13 +159,16 @@ int32_t tile_size_of(const ActiveJob& job) {
   return tile_size_of(job.region, job.samples, job.layout.layers.splats, job.threshold.adaptive());
 }
 
-void Speed::note(uint64_t done, TimePoint now) {
-  if (last_ != TimePoint{}) {
+void Speed::note(uint64_t done, TimePoint now, bool busy) {
+  if (last_ != TimePoint{} && busy) {
     const double passed = std::chrono::duration<double>(now - last_).count();
     if (passed <= 0) return;
+    // Of the time before it is counted how long it was, so that the first films of a job, or the
+    // first after a start, are not taken for what comes in a moment.
     const double keep = std::exp(-passed / kSmoothing);
-    const double recent = done > done_ ? static_cast<double>(done - done_) / passed : 0.0;
-    rate_ = rate_ == 0 ? recent : keep * rate_ + (1 - keep) * recent;
+    const double fresh = done > done_ ? static_cast<double>(done - done_) : 0.0;
+    samples_ = keep * samples_ + fresh;
+    seconds_ = keep * seconds_ + passed;
   }
   last_ = now;
   done_ = done;
@@ -174,6 +177,28 @@ void Speed::note(uint64_t done, TimePoint now) {
 uint64_t ActiveJob::next_life() {
   static std::atomic<uint64_t> last{0};
   return ++last;
+}
+
+void ActiveJob::set_busy(bool busy, TimePoint now) {
+  if (busy_since != TimePoint{} && now > busy_since) {
+    stored.busy_ns += static_cast<uint64_t>(std::chrono::nanoseconds(now - busy_since).count());
+  }
+  busy_since = busy ? now : TimePoint{};
+}
+
+bool ActiveJob::is_worked_on(uint32_t leased) const {
+  if (ending) return false;
+  return leased > 0 || making_videos ||
+         std::any_of(
+             in_work.begin(), in_work.end(), [this](int32_t frame) HYADES_REQUIRES(state_lock) {
+               const auto noted = frames.find(frame);
+               return noted != frames.end() && noted->second.state == v1::FRAME_STATE_FINISHING;
+             });
+}
+
+bool ActiveJob::is_waiting(uint32_t leased) const {
+  return stored.state == StoredState::running && leased == 0 && !making_videos && !ending &&
+         samples_done + samples_spared < stored.samples;
 }
 
 FrameNote& ActiveJob::touch(int32_t frame) {
@@ -242,6 +267,7 @@ v1::Job describe(const StoredJob& job) {
   wire.set_seconds_left(-1);
   wire.set_submitted_ms(job.submitted_ms);
   wire.set_begun_ms(job.begun_ms);
+  wire.set_busy_seconds(1e-9 * static_cast<double>(job.busy_ns));
   wire.set_ended_ms(job.ended_ms);
   wire.set_reason(farm::wire_text(job.reason));
   wire.set_core_seconds(1e-9 * static_cast<double>(job.core_ns));
@@ -269,11 +295,13 @@ v1::Job ActiveJob::describe(uint32_t leased) const {
   if (const auto shown = preview_frame()) wire.set_preview_frame(*shown);
   if (threshold.adaptive()) wire.set_noise_aim(as_written(threshold.aim.noise));
   if (noise) wire.set_noise(*noise);
-  wire.set_samples_per_second(speed.per_second());
+  // Of one that nobody has in hand it is how fast it was once.
   if (speed.per_second() > 0 && leased > 0) {
+    wire.set_samples_per_second(speed.per_second());
     wire.set_seconds_left(static_cast<double>(samples - std::min(samples_done, samples)) /
                           speed.per_second());
   }
+  if (is_waiting(leased)) wire.set_reason(farm::wire_text(obstacle));
   if (!row_trouble.empty()) wire.set_reason(farm::wire_text(row_trouble));
   if (!trouble.empty()) wire.set_reason(farm::wire_text(trouble));
   return wire;
@@ -376,6 +404,10 @@ core::Result<std::unique_ptr<ActiveJob>> make_active_job(const StoredJob& stored
       static_cast<uint64_t>(active->region.area()) * uint64_t{active->samples};
   active->key = key_of(spec, layers);
   for (const int32_t frame : active->numbers) active->frames[frame];
+  v1::Job options = options_of(stored);
+  active->needs = needs_of(options);
+  options.set_frame_rate(core::video_frames(job, {}, active->numbers).rate);
+  active->stored.options = options.SerializeAsString();
   active->stored.name = spec.name().empty() ? job.name : spec.name();
   active->stored.frames = static_cast<uint32_t>(active->numbers.size());
   active->stored.samples = active->samples_per_frame * active->numbers.size();

@@ -53,20 +53,25 @@ struct FilmUnderWay {
   uint64_t render_ns = 0;  ///< nanoseconds that the thread took
   int64_t came_us = 0;     ///< when it arrived: microseconds since 1970, UTC
   TimePoint came;          ///< the same by the steady clock
+  bool is_old = false;     ///< the worker had it before the coordinator started
 };
 
 /// How fast samples become durable, smoothed over some ten seconds.
 class Speed {
  public:
-  /// Notes that `done` samples in all are durable at `now`.
-  void note(uint64_t done, TimePoint now);
-  /// Samples per second.
-  double per_second() const { return rate_; }
+  /// Notes that `done` samples in all are durable at `now`. Time in which nobody renders (not
+  /// `busy`) and what comes in it do not count.
+  void note(uint64_t done, TimePoint now, bool busy);
+  /// So many samples of those that are noted next were rendered long ago.
+  void skip(uint64_t samples) { done_ += samples; }
+  /// Samples per second; 0: not known yet.
+  double per_second() const { return seconds_ > 0 ? samples_ / seconds_ : 0; }
 
  private:
   TimePoint last_;
   uint64_t done_ = 0;
-  double rate_ = 0;
+  double samples_ = 0;  ///< lately, what is longer ago counting less
+  double seconds_ = 0;  ///< that these took, counted alike
 };
 
 /// All that the coordinator has in memory of a job that has not ended. What the state lock does not
@@ -93,6 +98,7 @@ struct ActiveJob {
   std::vector<core::VideoDesc> videos;
   core::VideoFrames video_frames;  ///< what they are made of, but for the folder
   bool leaves_out_videos = false;  ///< the document has some, and the spec not all frames
+  JobNeeds needs;                  ///< what it asks of its workers
 
   core::PixelRect region;
   core::FilmLayout layout;
@@ -119,6 +125,11 @@ struct ActiveJob {
   std::set<int32_t> in_work HYADES_GUARDED_BY(state_lock);
   std::set<int32_t> failed HYADES_GUARDED_BY(state_lock);  ///< frames that have failed
   Speed speed HYADES_GUARDED_BY(state_lock);
+  /// Since when it has been worked on without a pause that is not in stored.busy_ns; none: nobody
+  /// works on it.
+  TimePoint busy_since HYADES_GUARDED_BY(state_lock);
+  /// Why nobody who is there may render it, while it waits; empty: somebody may, or it does not.
+  std::string obstacle HYADES_GUARDED_BY(state_lock);
   std::optional<double> noise HYADES_GUARDED_BY(state_lock);  ///< that was measured last
   TimePoint noise_measured HYADES_GUARDED_BY(state_lock);     ///< when that was
 
@@ -145,6 +156,12 @@ struct ActiveJob {
 
   /// The frame, which changes now.
   FrameNote& touch(int32_t frame) HYADES_REQUIRES(state_lock);
+  /// Counts the time in which somebody has worked on it; from `now` on somebody does, or not.
+  void set_busy(bool busy, TimePoint now) HYADES_REQUIRES(state_lock);
+  /// Whether anybody does something for it, where `leased` of its units are with workers.
+  bool is_worked_on(uint32_t leased) const HYADES_REQUIRES(state_lock);
+  /// Whether it runs, and has something left to be rendered of which nobody has any.
+  bool is_waiting(uint32_t leased) const HYADES_REQUIRES(state_lock);
   /// Something else of the job changes now.
   void touch() HYADES_REQUIRES(state_lock) { ++version; }
   /// Adds a line to the job's log; it is dropped and counted where too many wait for the disk.

@@ -144,8 +144,9 @@ void Controller::Parts::tick() {
   sessions.look_after(turn);
   if (now - last_poke < kPokeEvery) return;
   last_poke = now;
-  workers.note_speeds(now);
-  records.look_after(now, disk.is_full());
+  workers.note_speeds(now, dispatcher.scheduler());
+  records.look_after(now, disk.is_full(), dispatcher.scheduler());
+  diagnosis.note_obstacles();
   watchers.poke_changed();
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cstddef>
+#include <map>
 #include <utility>
 
 #include <fmt/format.h>
@@ -21,6 +22,10 @@ namespace {
 /// So many reasons of each kind are listed, and the others counted: a job may have a million
 /// frames.
 constexpr size_t kMostOfAKind = 20;
+
+constexpr const char* kNobody = "no worker is there that could take units";
+/// Different needs of jobs that are held against all workers at a time.
+constexpr size_t kMostNeeds = 64;
 
 }  // namespace
 
@@ -120,6 +125,26 @@ bool Diagnosis::explain_open(uint64_t id, v1::ExplainResponse& response) {
   return true;
 }
 
+void Diagnosis::note_obstacles() {
+  const bool somebody = anybody();
+  std::map<std::string, std::string> unmet;  // by needs
+  for (const auto& [id, active] : jobs_.all()) {
+    std::string obstacle;
+    if (!active->is_waiting(dispatcher_.scheduler().leased_units(id))) {
+      // What is in the way of the next unit is nobody's question.
+    } else if (!somebody) {
+      obstacle = kNobody;
+    } else if (const JobNeeds& needs = active->needs; needs.any()) {
+      const std::string key = fmt::format("{} {}", needs.memory, fmt::join(needs.tags, " "));
+      if (unmet.size() < kMostNeeds && !unmet.contains(key)) unmet[key] = unmet_needs(needs);
+      if (const auto known = unmet.find(key); known != unmet.end()) obstacle = known->second;
+    }
+    if (obstacle == active->obstacle) continue;
+    active->obstacle = std::move(obstacle);
+    active->touch();
+  }
+}
+
 void Diagnosis::explain_state(const ActiveJob& active, Reasons& reasons) const {
   if (disk_.level() != DiskLevel::roomy) {
     reasons.say(disk_.reason() +
@@ -136,8 +161,8 @@ void Diagnosis::explain_state(const ActiveJob& active, Reasons& reasons) const {
 
 /// Whether somebody is there who may render it.
 bool Diagnosis::explain_workers(const ActiveJob& active, bool anybody, Reasons& reasons) const {
-  const std::string unmet = unmet_needs(needs_of(options_of(active.stored)));
-  if (!anybody) reasons.say("no worker is there that could take units");
+  const std::string unmet = unmet_needs(active.needs);
+  if (!anybody) reasons.say(kNobody);
   if (!unmet.empty()) reasons.say(unmet);
   if (anybody && unmet.empty()) return true;
   for (const std::string& barred : barred_workers()) reasons.say(barred);
@@ -181,9 +206,9 @@ void Diagnosis::explain_noise(const ActiveJob& active, Reasons& reasons) const {
     const FrameNote& note = active.frames.at(number);
     if (note.state != v1::FRAME_STATE_RENDERING || !note.noise) continue;
     reasons.say_one(
-        "frame {} has a noise of {:.2g} on average; its tiles go on until the noisiest part of "
-        "each has {:.2g}",
-        number, *note.noise, active.threshold.aim.noise);
+        "frame {} has a noise of {} on average; its tiles go on until the noisiest part of each "
+        "has {}",
+        number, core::format_noise(*note.noise), core::format_noise(active.threshold.aim.noise));
   }
   reasons.end_kind("frames have tiles that are noisier than the job asks for");
 }

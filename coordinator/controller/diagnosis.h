@@ -34,6 +34,9 @@ class Diagnosis {
   grpc::Status explain(uint64_t job, v1::ExplainResponse& response) HYADES_EXCLUDES(state_lock);
   /// explain() without waiting: false, and nothing is told, where the job has ended or is none.
   bool explain_open(uint64_t job, v1::ExplainResponse& response) HYADES_EXCLUDES(state_lock);
+  /// Finds out, of all jobs that wait, whether anybody who is there may render them
+  /// (ActiveJob::obstacle); to be called from time to time.
+  void note_obstacles() HYADES_REQUIRES(state_lock);
 
  private:
   class Reasons;
@@ -47,6 +50,7 @@ class Diagnosis {
   void explain_noise(const ActiveJob& active, Reasons& reasons) const HYADES_REQUIRES(state_lock);
   void explain_rivals(const ActiveJob& active, Reasons& reasons) const HYADES_REQUIRES(state_lock);
   // diagnosis_needs.cpp
+  bool anybody() const HYADES_REQUIRES(state_lock);
   std::string unmet_needs(const JobNeeds& job) const HYADES_REQUIRES(state_lock);
   std::vector<std::string> barred_workers() const HYADES_REQUIRES(state_lock);
   std::vector<std::string> where_units_are(JobId job) const HYADES_REQUIRES(state_lock);

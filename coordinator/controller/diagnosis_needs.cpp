@@ -41,6 +41,14 @@ bool has_memory(const v1::Hello& hello, uint64_t bytes) {
 
 }  // namespace
 
+/// Whether a worker is there that could take units.
+bool Diagnosis::anybody() const {
+  return std::any_of(workers_.all().begin(), workers_.all().end(),
+                     [](const auto& entry) HYADES_REQUIRES(state_lock) {
+                       return entry.second.joined && entry.second.state == v1::WORKER_STATE_ACTIVE;
+                     });
+}
+
 /// Why none of the workers that could take units may take this job's; nothing where one may, or
 /// where it asks for nothing.
 std::string Diagnosis::unmet_needs(const JobNeeds& job) const {

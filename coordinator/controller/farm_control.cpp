@@ -97,7 +97,10 @@ v1::Worker FarmControl::describe(const WorkerSession& session) const {
   wire.set_cache_limit_bytes(session.cache_limit);
   wire.set_cache_hits(session.cache_hits);
   wire.set_cache_misses(session.cache_misses);
-  if (session.joined) wire.set_samples_per_second(session.speed.per_second());
+  // Of an idle one it is how fast it was once.
+  if (session.joined && wire.leased() > 0) {
+    wire.set_samples_per_second(session.speed.per_second());
+  }
   return wire;
 }
 

@@ -91,14 +91,17 @@ void FrameProgress::count_film(ActiveJob& active, const Merge& merge, int64_t be
   if (found != active.films_under_way.end()) {
     const FilmUnderWay film = std::move(found->second);
     active.films_under_way.erase(found);
+    const uint64_t samples = samples_of(active, merge.unit.tile, merge.unit.batches);
     active.stored.core_ns += film.render_ns;
     active.frames[merge.unit.frame].render_ns += film.render_ns;
     context_.meters->result("accepted");
     context_.meters->made_durable(std::chrono::steady_clock::now() - film.came);
     if (WorkerSession* session = workers_.find(film.worker)) {
       ++session->units_done;
-      session->samples_done += samples_of(active, merge.unit.tile, merge.unit.batches);
+      // What it had before the start says nothing about how fast it is.
+      if (!film.is_old) session->samples_done += samples;
     }
+    if (film.is_old) active.speed.skip(samples);
     const auto took_us = static_cast<int64_t>(film.render_ns / 1000);
     timelines_.note(id, {v1::TimelineStep::KIND_RENDER, film.name, film.thread, merge.unit,
                          film.came_us - took_us, film.came_us});

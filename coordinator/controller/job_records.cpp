@@ -125,9 +125,11 @@ void JobRecords::answer_late(TimePoint now) {
   for (const auto& [reply, why] : late) reply.then(not_stored(why), {});
 }
 
-void JobRecords::look_after(TimePoint now, bool disk_full) {
+void JobRecords::look_after(TimePoint now, bool disk_full, const Scheduler& scheduler) {
   for (const auto& [id, active] : jobs_.all()) {
-    active->speed.note(active->samples_done, now);
+    const uint32_t leased = scheduler.leased_units(id);
+    active->speed.note(active->samples_done, now, leased > 0);
+    active->set_busy(active->is_worked_on(leased), now);
     if (active->ending || disk_full) continue;
     if (active->stored.core_ns != active->core_ns_stored &&
         now - active->core_stored >= kStoreCoreEvery) {
@@ -161,6 +163,7 @@ bool JobRecords::store_lines(JobId id) {
 }
 
 void JobRecords::end(ActiveJob& active, bool cancelled, const std::string& why) {
+  active.set_busy(false, std::chrono::steady_clock::now());
   active.ending = true;
   StoredJob& stored = active.stored;
   stored.state = cancelled                                  ? StoredState::cancelled

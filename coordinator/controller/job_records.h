@@ -9,6 +9,7 @@
 
 #include "coordinator/controller/controller_context.h"
 #include "coordinator/controller/job_table.h"
+#include "coordinator/scheduler/scheduler.h"
 
 namespace hyades::coordinator {
 
@@ -42,7 +43,8 @@ class JobRecords {
   /// frames have not.
   void end(ActiveJob& active, bool cancelled, const std::string& why) HYADES_REQUIRES(state_lock);
   /// Updates speeds, and has accounts and lines of logs stored; to be called from time to time.
-  void look_after(TimePoint now, bool disk_full) HYADES_REQUIRES(state_lock);
+  void look_after(TimePoint now, bool disk_full, const Scheduler& scheduler)
+      HYADES_REQUIRES(state_lock);
 
  private:
   struct PendingReply {

@@ -283,6 +283,7 @@ std::optional<ResultRefusal> WorkerSessions::deliver(WorkerSession& session,
   delivery.rendered.render_ns =
       std::min(result.render_ns(), longest_rendering(session, result, unit));
   delivery.rendered.came_us = core::wall_us();
+  delivery.rendered.is_old = result.lease().incarnation() != context_.incarnation;
   // What a worker notes counts once, with a film of a unit that it has.
   const v1::LeasedUnit named = named_unit(result);
   const int notes = has(session, named, unit) ? std::min(result.notes_size(), kMostNotes) : 0;
@@ -346,6 +347,7 @@ void WorkerSessions::send_lease(const Lease& lease) {
   context_.meters->leased(lease.units.size(), lease.adopted);
 
   if (active->stored.begun_ms == 0) active->stored.begun_ms = core::wall_ms();
+  active->set_busy(true, std::chrono::steady_clock::now());
   const int32_t number = lease.units.front().frame;
   FrameNote& frame = active->touch(number);
   if (frame.state == v1::FRAME_STATE_WAITING) {

@@ -212,6 +212,7 @@ grpc::Status WorkerSessions::attach(const v1::Hello& hello, const std::shared_pt
     session.reason = *why;
   } else {
     session.state = v1::WORKER_STATE_ACTIVE;
+    session.reason = session.drained.value_or("");  // not why an earlier process has left
   }
   link->send(bytes_of(welcome(hello, pass)));
   for (v1::LeasedUnit& unit : unproven) {

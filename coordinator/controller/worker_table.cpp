@@ -113,9 +113,10 @@ std::vector<std::string> WorkerTable::names_of(const std::vector<WorkerId>& work
   return names;
 }
 
-void WorkerTable::note_speeds(TimePoint now) {
+void WorkerTable::note_speeds(TimePoint now, const Scheduler& scheduler) {
   for (auto& [id, session] : sessions_) {
-    if (session.joined) session.speed.note(session.samples_done, now);
+    if (!session.joined) continue;
+    session.speed.note(session.samples_done, now, scheduler.leased_units(id) > 0);
   }
 }
 

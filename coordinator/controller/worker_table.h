@@ -98,7 +98,7 @@ class WorkerTable {
       HYADES_REQUIRES(state_lock);
 
   /// Updates how fast workers are; to be called from time to time.
-  void note_speeds(TimePoint now) HYADES_REQUIRES(state_lock);
+  void note_speeds(TimePoint now, const Scheduler& scheduler) HYADES_REQUIRES(state_lock);
 
   /// Sends a message to the worker; does nothing where it has no stream.
   void send(WorkerId worker, const v1::CoordinatorMessage& message) HYADES_REQUIRES(state_lock);

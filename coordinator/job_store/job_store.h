@@ -35,6 +35,7 @@ struct StoredJob {
   uint64_t samples_done = 0;  ///< when it ended
   int64_t submitted_ms = 0;
   int64_t begun_ms = 0;  ///< when its first unit was leased; 0: never, or it is not known
+  uint64_t busy_ns = 0;  ///< in which it was worked on
   int64_t ended_ms = 0;
   std::string reason;
   uint64_t core_ns = 0;            ///< that threads took for the results which counted

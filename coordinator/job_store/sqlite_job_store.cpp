@@ -24,8 +24,8 @@ namespace {
 constexpr std::string_view kJobColumns =
     "id, key, name, owner, priority, state, frames, frames_done, frames_failed, samples, "
     "submitted_ms, ended_ms, reason, core_ns, preview, owner_proven, options, "
-    "samples_done, begun_ms";
-constexpr int kSpecColumn = 19;  ///< where it is asked for: behind all others
+    "samples_done, begun_ms, busy_ns";
+constexpr int kSpecColumn = 20;  ///< where it is asked for: behind all others
 
 constexpr int64_t kMsPerHour = 3'600'000;
 
@@ -53,6 +53,7 @@ StoredJob read_job(const Query& row) {
   job.options = row.bytes(16);
   job.samples_done = static_cast<uint64_t>(row.integer(17));
   job.begun_ms = row.integer(18);
+  job.busy_ns = static_cast<uint64_t>(row.integer(19));
   return job;
 }
 
@@ -93,8 +94,8 @@ class SqliteJobStore final : public JobStore {
     Query insert(db_.get(),
                  "INSERT INTO jobs (key, spec, name, owner, priority, state, frames, "
                  "frames_done, frames_failed, samples, submitted_ms, ended_ms, reason, core_ns, "
-                 "samples_done, begun_ms, preview, owner_proven, options, max_workers) "
-                 "VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, 0)");
+                 "samples_done, begun_ms, busy_ns, preview, owner_proven, options, max_workers) "
+                 "VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, 0)");
     if (job.key.empty()) {
       insert.bind_null();
     } else {
@@ -123,8 +124,8 @@ class SqliteJobStore final : public JobStore {
         db_.get(),
         "UPDATE jobs SET priority = ?, state = ?, frames = ?, "
         "frames_done = ?, frames_failed = ?, samples = ?, submitted_ms = ?, "
-        "ended_ms = ?, reason = ?, core_ns = ?, samples_done = ?, begun_ms = ?, preview = ? "
-        "WHERE id = ?");
+        "ended_ms = ?, reason = ?, core_ns = ?, samples_done = ?, begun_ms = ?, busy_ns = ?, "
+        "preview = ? WHERE id = ?");
     bind_changing(update, job);
     return update.bind(number(job.id)).run();
   }
@@ -421,7 +422,8 @@ class SqliteJobStore final : public JobStore {
         .bind(job.reason)
         .bind(number(job.core_ns))
         .bind(number(job.samples_done))
-        .bind(job.begun_ms);
+        .bind(job.begun_ms)
+        .bind(number(job.busy_ns));
     if (job.preview) {
       query.bind(int64_t{*job.preview});
     } else {

@@ -82,6 +82,10 @@ class JobState:
     """That best stands for the job; None: nothing is to be seen yet."""
     noise_aim: float = 0.0
     noise: float | None = None
+    busy_seconds: float = 0.0
+    """In which it was worked on: waiting does not count."""
+    frame_rate: float = 0.0
+    """At which its frames are a video in real time; 0: not known."""
 
     @property
     def ended(self) -> bool:

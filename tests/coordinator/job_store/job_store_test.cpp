@@ -331,6 +331,7 @@ TEST(JobStore, FilesOfTheFirstSchemasAreBroughtUpToDate) {
                          "ALTER TABLE jobs DROP COLUMN options; DROP TABLE secret; "
                          "ALTER TABLE jobs DROP COLUMN samples_done; "
                          "ALTER TABLE jobs DROP COLUMN begun_ms; "
+                         "ALTER TABLE jobs DROP COLUMN busy_ns; "
                          "PRAGMA user_version=3",
                          nullptr, nullptr, nullptr),
             SQLITE_OK);
@@ -370,6 +371,7 @@ TEST(JobStore, OwnersOfTheSixthSchemaAreProvenByTokensThatWereThereBefore) {
                          "ALTER TABLE tokens DROP COLUMN machines; "
                          "ALTER TABLE jobs DROP COLUMN samples_done; "
                          "ALTER TABLE jobs DROP COLUMN begun_ms; "
+                         "ALTER TABLE jobs DROP COLUMN busy_ns; "
                          "PRAGMA user_version=6",
                          nullptr, nullptr, nullptr),
             SQLITE_OK);

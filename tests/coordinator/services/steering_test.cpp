@@ -43,6 +43,90 @@ TEST(Steering, APausedJobRestsAlsoOverARestart) {
   world.expect_truth(job, 2);
 }
 
+/// The lines of a job's log.
+std::string log_of(const FarmWorld& world, uint64_t job) {
+  v1::LogsRequest request;
+  request.set_job(job);
+  const auto context = world.context();
+  const auto reader = world.jobs->Logs(context.get(), request);
+  std::string all;
+  for (v1::LogLine line; reader->Read(&line);) all += line.text() + "\n";
+  (void)reader->Finish();
+  return all;
+}
+
+TEST(Steering, WaitingIsNotWhatAJobTook) {
+  FarmWorld world;
+  world.options.unit_time = 1ms;  // a batch: so there are many units
+  world.start();
+  const uint64_t job = world.submit(3);
+  constexpr const char* kNobody = "no worker is there that could take units";
+  const auto waits = [&] { return world.get(job).job().reason() == kNobody; };
+  EXPECT_TRUE(eventually(waits));
+  EXPECT_EQ(world.get(job).job().busy_seconds(), 0);
+  {
+    ScriptedWorker::Script script = world.script();
+    script.unit_time = 20ms;
+    const ScriptedWorker worker(world.address, script);
+    ASSERT_TRUE(eventually([&] { return worker.acknowledged() >= 8; }));
+    EXPECT_EQ(world.get(job).job().reason(), "");
+  }
+  EXPECT_TRUE(eventually(waits)) << "and what the worker had goes to others";
+  const double busy = world.get(job).job().busy_seconds();
+  EXPECT_GE(busy, 0.08) << "eight units of 20 ms on two threads";
+  std::this_thread::sleep_for(600ms);
+  EXPECT_EQ(world.get(job).job().busy_seconds(), busy);
+  const ScriptedWorker worker(world.address, world.script(2));
+  ASSERT_TRUE(world.wait_for(job, v1::JOB_STATE_DONE));
+  const v1::Job over = world.get(job).job();
+  EXPECT_GT(over.busy_seconds(), busy);
+  EXPECT_LT(over.busy_seconds(),
+            1e-3 * static_cast<double>(over.ended_ms() - over.begun_ms()) - 0.5);
+}
+
+TEST(Steering, AJobsLogTellsOfStartsAndOfWhatPeopleDo) {
+  FarmWorld world;
+  world.start();
+  const uint64_t job = world.submit(1);
+  world.stop();
+  world.start();
+  v1::JobResponse now;
+  v1::SetPriorityRequest request;
+  request.set_job(job);
+  request.set_priority(7);
+  ASSERT_TRUE(world.jobs->SetPriority(world.context().get(), request, &now).ok());
+  ASSERT_TRUE(world.jobs->Cancel(world.context().get(), about(job), &now).ok());
+  const std::string log = log_of(world, job);
+  for (const char* told : {"goes on: the coordinator has been started again\n",
+                           "priority changed to 7\n", "cancelled\n"}) {
+    EXPECT_NE(log.find(told), std::string::npos) << log;
+  }
+}
+
+TEST(Steering, AWorkerThatCameAgainIsNotCalledDrained) {
+  FarmWorld world;
+  world.start();
+  v1::WorkerResponse now;
+  v1::WorkerRequest request;
+  request.set_worker("scripted/1");
+  request.set_reason("drained");
+  {
+    const ScriptedWorker worker(world.address, world.script());
+    ASSERT_TRUE(eventually([&] { return worker.streams() == 1; }));
+    ASSERT_TRUE(world.farm_->DrainWorker(world.context().get(), request, &now).ok());
+  }
+  ScriptedWorker::Script script = world.script();
+  script.name = "scripted/3";  // another process, by the same cache
+  const ScriptedWorker worker(world.address, script);
+  v1::WorkersResponse workers;
+  EXPECT_TRUE(eventually([&] {
+    (void)world.farm_->Workers(world.context().get(), {}, &workers);
+    return workers.workers_size() == 1 && workers.workers(0).name() == "scripted/3" &&
+           workers.workers(0).state() == v1::WORKER_STATE_ACTIVE;
+  }));
+  EXPECT_EQ(workers.workers(0).reason(), "");
+}
+
 TEST(Steering, ACancelledJobCanBeTakenUpAgainAndDeleted) {
   FarmWorld world;
   world.options.unit_time = 1ms;  // a batch: so there are many units
