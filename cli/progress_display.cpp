@@ -51,11 +51,13 @@ void ProgressDisplay::update(const coordinator::Progress& progress) {
     return;
   }
   const int percent = static_cast<int>(100.0 * fraction(progress));
-  const bool waiting = !progress.trouble.empty();
-  const bool begins_to_wait = waiting && !waiting_;
-  waiting_ = waiting;
-  if (!begins_to_wait && (now - last_ < kPlainEvery || percent == last_percent_)) return;
+  const bool news = percent != last_percent_ || progress.trouble != told_;
+  // Why nothing happens is said at once, but once.
+  const bool at_once = !progress.trouble.empty() && progress.trouble != trouble_;
+  if (!at_once && (now - last_ < kPlainEvery || !news)) return;
   last_ = now;
+  told_ = progress.trouble;
+  if (!told_.empty()) trouble_ = told_;
   last_percent_ = percent;
   std::fprintf(stderr, "%s\n", line(progress).c_str());
 }

@@ -31,7 +31,8 @@ class ProgressDisplay {
   StatusLine status_;
   std::chrono::steady_clock::time_point last_;
   int last_percent_ = -1;
-  bool waiting_ = false;  ///< it has been told why nothing happens
+  std::string told_;     ///< the trouble of the line that was printed last
+  std::string trouble_;  ///< the last one that was printed
 };
 
 }  // namespace hyades::cli

@@ -40,7 +40,7 @@ int for_each_job(const ClientApp& app, const std::vector<std::string>& names, Na
       list.push_back(to_json(job));
     } else if (job.state() != v1::JOB_STATE_UNSPECIFIED) {
       std::printf("job %lu (%s) is %s, priority %d\n", id, core::printable(job.name()).c_str(),
-                  state_name(job.state()).c_str(), job.priority());
+                  job_look(job).c_str(), job.priority());
     } else {
       std::printf("job %lu is deleted\n", id);
     }

@@ -34,13 +34,15 @@ constexpr const char* kSuspect = "in doubt: a divergent worker had a part in it"
 
 /// How long the job has been rendered; "-" of one that nobody has begun.
 std::string taken_text(const v1::Job& job) {
-  const bool begun = job.begun_ms() != 0 || job.ended_ms() != 0;
-  return begun ? core::format_duration(seconds_taken(job)) : "-";
+  const auto taken = seconds_taken(job);
+  return taken ? core::format_duration(*taken) : "-";
 }
 
-/// "1.25", and at the coordinator's price "1.25 (3.10)".
+/// "1.25", and at the coordinator's price "1.25 (3.10)"; "-" where nothing was rendered.
 std::string hours_text(const v1::Job& job) {
-  std::string text = fmt::format("{:.2f}", job.core_seconds() / 3600);
+  const double hours = job.core_seconds() / 3600;
+  if (!(hours > 0)) return "-";
+  std::string text = hours < 0.01 ? "< 0.01" : fmt::format("{:.2f}", hours);
   if (job.cost() > 0) text += fmt::format(" ({:.2f})", job.cost());
   return text;
 }

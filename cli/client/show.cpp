@@ -32,10 +32,46 @@ std::string job_look(const v1::Job& job) {
   return waits ? "waiting" : state_name(job.state());
 }
 
-double seconds_taken(const v1::Job& job) {
+std::string job_trouble(const v1::Job& job) {
+  if (job.state() == v1::JOB_STATE_PAUSED) return "paused";
+  if (!job.reason().empty()) return core::printable(job.reason());
+  return job_look(job) == "waiting" ? "waiting for its turn" : "";
+}
+
+std::optional<double> seconds_taken(const v1::Job& job) {
+  if (job.busy_seconds() > 0) return job.busy_seconds();
+  const bool begun_once = job.begun_ms() != 0 || job.samples_done() > 0 || job.frames_done() > 0;
+  if (!begun_once) return std::nullopt;
   const int64_t begun = job.begun_ms() != 0 ? job.begun_ms() : job.submitted_ms();
   const int64_t ended = job.ended_ms() != 0 ? job.ended_ms() : core::wall_ms();
   return 1e-3 * static_cast<double>(std::max<int64_t>(ended - begun, 0));
+}
+
+bool is_before(std::string_view a, std::string_view b) {
+  const auto is_digit = [](char c) { return c >= '0' && c <= '9'; };
+  // The digits at the beginning, without zeros that say nothing.
+  const auto take_number = [&](std::string_view& text) {
+    const auto end = std::find_if_not(text.begin(), text.end(), is_digit);
+    std::string_view digits = text.substr(0, static_cast<size_t>(end - text.begin()));
+    text.remove_prefix(digits.size());
+    digits.remove_prefix(std::min(digits.find_first_not_of('0'), digits.size()));
+    return digits;
+  };
+  const std::string_view whole_a = a;
+  const std::string_view whole_b = b;
+  while (!a.empty() && !b.empty()) {
+    if (is_digit(a.front()) && is_digit(b.front())) {
+      const std::string_view m = take_number(a);
+      const std::string_view n = take_number(b);
+      if (m.size() != n.size()) return m.size() < n.size();
+      if (m != n) return m < n;
+      continue;
+    }
+    if (a.front() != b.front()) return a.front() < b.front();
+    a.remove_prefix(1);
+    b.remove_prefix(1);
+  }
+  return a.size() != b.size() ? a.size() < b.size() : whole_a < whole_b;
 }
 
 std::string percent(uint64_t part, uint64_t whole) {

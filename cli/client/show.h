@@ -1,7 +1,9 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/base/printable.h"
@@ -20,8 +22,15 @@ void print_json(const Json& json);
 /// What people call a job's state: one that runs is waiting while no worker has any of it.
 std::string job_look(const v1::Job& job);
 
-/// Seconds from when somebody began the job (before: from its submission) to its end, or to now.
-double seconds_taken(const v1::Job& job);
+/// Why it does not get on, in a few words; empty where it does.
+std::string job_trouble(const v1::Job& job);
+
+/// Seconds in which somebody worked on the job (of one that an older coordinator tells of: from its
+/// beginning to its end, or to now); nothing of one that nobody has begun.
+std::optional<double> seconds_taken(const v1::Job& job);
+
+/// Whether `a` comes before `b`, what is digits in both compared as numbers: "w9" before "w10".
+bool is_before(std::string_view a, std::string_view b);
 
 /// "62.5 %" of something that may be nothing.
 std::string percent(uint64_t part, uint64_t whole);

@@ -111,10 +111,8 @@ Outcome look(FarmClient& client, FarmNow& now) {
 Outcome show_once(FarmClient& client, const std::string& address) {
   FarmNow now;
   if (auto failure = look(client, now)) return failure;
-  WorkerSpeeds speeds;
-  speeds.note(now);
   const int rows = static_cast<int>(now.jobs.size() + now.workers.size()) + 8;
-  for (const std::string& line : top_page(now, speeds, address, 160, rows, false)) {
+  for (const std::string& line : top_page(now, address, 160, rows, false)) {
     const size_t end = line.find_last_not_of(' ');
     std::printf("%s\n", line.substr(0, end + 1).c_str());
   }
@@ -125,15 +123,13 @@ Outcome show_once(FarmClient& client, const std::string& address) {
 Outcome show_always(FarmClient& client, FarmClient& again, const std::string& address,
                     double interval) {
   const bool colors = shows_colors();
-  WorkerSpeeds speeds;
   FarmNow now;
   if (auto failure = look(client, now)) return failure;
   const Screen screen;
   for (bool reached = true;;) {
-    if (reached) speeds.note(now);
     const winsize size = terminal_size();
     std::vector<std::string> page =
-        top_page(now, speeds, address, size.ws_col, size.ws_row - (reached ? 0 : 1), colors);
+        top_page(now, address, size.ws_col, size.ws_row - (reached ? 0 : 1), colors);
     // What was there last stays in sight meanwhile.
     if (!reached) page.push_back("no answer from " + address + ": trying again; q ends");
     Screen::draw(page);

@@ -132,9 +132,9 @@ Style style_of(const v1::Worker& worker) {
 }
 
 void add_jobs(Page& page, std::vector<v1::Job> jobs, int room) {
-  const std::vector<Column> columns = {{"JOB", -6},   {"NAME", 24},  {"OWNER", 10}, {"PRIO", -4},
-                                       {"STATE", 8},  {"", 12},      {"", -7},      {"FRAMES", -11},
-                                       {"SPEED", -9}, {"LEFT", -11}, {"WHY", 40}};
+  const std::vector<Column> columns = {
+      {"JOB", -6}, {"NAME", 24},    {"OWNER", 10},  {"PRIO", -4},  {"STATE", 8}, {"", 12},
+      {"", -7},    {"FRAMES", -11}, {"SPEED", -15}, {"LEFT", -11}, {"WHY", 40}};
   std::sort(jobs.begin(), jobs.end(), [](const v1::Job& a, const v1::Job& b) {
     if ((a.leased() > 0) != (b.leased() > 0)) return a.leased() > 0;
     if (a.priority() != b.priority()) return a.priority() > b.priority();
@@ -154,7 +154,7 @@ void add_jobs(Page& page, std::vector<v1::Job> jobs, int room) {
                        {core::printable(job.name())},
                        {core::printable(job.owner()), Style::faint},
                        {std::to_string(job.priority())},
-                       {state_name(job.state()), style},
+                       {job_look(job), style},
                        {bar(share, 12), style},
                        {percent(job.samples_done(), job.samples())},
                        {fmt::format("{}/{}", job.frames_done(), job.frames())},
@@ -167,13 +167,13 @@ void add_jobs(Page& page, std::vector<v1::Job> jobs, int room) {
   }
 }
 
-void add_workers(Page& page, std::vector<v1::Worker> workers, const WorkerSpeeds& speeds) {
+void add_workers(Page& page, std::vector<v1::Worker> workers) {
   const std::vector<Column> columns = {
       {"WORKER", -6}, {"NAME", 24}, {"HOST", 15},   {"STATE", 11},  {"THREADS", -7}, {"OUT", -5},
-      {"SPEED", -9},  {"DONE", -8}, {"FAILED", -6}, {"MEMORY", -9}, {"WHY", 40}};
+      {"SPEED", -15}, {"DONE", -8}, {"FAILED", -6}, {"MEMORY", -9}, {"WHY", 40}};
   std::sort(workers.begin(), workers.end(), [](const v1::Worker& a, const v1::Worker& b) {
     if (a.state() != b.state()) return a.state() < b.state();
-    return a.name() != b.name() ? a.name() < b.name() : a.id() < b.id();
+    return a.name() != b.name() ? is_before(a.name(), b.name()) : a.id() < b.id();
   });
   page.head(columns);
   if (workers.empty()) page.line("  no worker is there", Style::faint);
@@ -189,7 +189,7 @@ void add_workers(Page& page, std::vector<v1::Worker> workers, const WorkerSpeeds
               {state_name(worker.state()), style_of(worker)},
               {std::to_string(worker.threads())},
               {std::to_string(worker.leased())},
-              {speed_text(speeds.of(worker.id()))},
+              {speed_text(worker.samples_per_second())},
               {core::format_count(worker.units_done())},
               {std::to_string(worker.units_failed()),
                worker.units_failed() > 0 ? Style::bad : Style::plain},
@@ -203,51 +203,21 @@ void add_workers(Page& page, std::vector<v1::Worker> workers, const WorkerSpeeds
 
 }  // namespace
 
-void WorkerSpeeds::note(const FarmNow& now) {
-  std::map<uint64_t, One> noted;
-  for (const v1::Worker& worker : now.workers) {
-    One one{worker.samples_done(), now.time_ms, 0};
-    const auto before = workers_.find(worker.id());
-    if (before != workers_.end() && now.time_ms > before->second.time_ms &&
-        worker.samples_done() >= before->second.samples) {
-      const double passed = 1e-3 * static_cast<double>(now.time_ms - before->second.time_ms);
-      const double latest =
-          static_cast<double>(worker.samples_done() - before->second.samples) / passed;
-      // Units come in bunches: smoothed over some ten seconds.
-      const double weight = 1 - std::exp(-passed / 10);
-      const double old = before->second.speed;
-      one.speed = old > 0 ? old + (latest - old) * weight : latest;
-    }
-    noted[worker.id()] = one;
-  }
-  workers_ = std::move(noted);
-}
-
-double WorkerSpeeds::of(uint64_t worker) const {
-  const auto known = workers_.find(worker);
-  return known == workers_.end() ? 0 : known->second.speed;
-}
-
-double WorkerSpeeds::all() const {
-  double sum = 0;
-  for (const auto& [id, one] : workers_) sum += one.speed;
-  return sum;
-}
-
-std::vector<std::string> top_page(const FarmNow& now, const WorkerSpeeds& speeds,
-                                  const std::string& coordinator, int width, int height,
-                                  bool colors) {
+std::vector<std::string> top_page(const FarmNow& now, const std::string& coordinator, int width,
+                                  int height, bool colors) {
   Page page(width, height, colors);
   size_t connected = 0;
   uint32_t threads = 0;
+  double speed = 0;
   for (const v1::Worker& worker : now.workers) {
     if (worker.state() == v1::WORKER_STATE_GONE) continue;
     ++connected;
     threads += worker.threads();
+    speed += worker.samples_per_second();
   }
-  page.line(fmt::format("hyades top - {} - {}, {} with {} threads, {}", coordinator,
+  page.line(fmt::format("hyades top - {} - {}, {} with {}, {}", coordinator,
                         core::counted(now.jobs.size(), "job"), core::counted(connected, "worker"),
-                        threads, speed_text(speeds.all())));
+                        core::counted(threads, "thread"), speed_text(speed)));
   page.line(format_time(now.time_ms), Style::faint);
   // Two heads, and what lies between them; jobs get half of the rest, and what workers do not need.
   const int rows = std::max(height - 5, 0);
@@ -256,7 +226,7 @@ std::vector<std::string> top_page(const FarmNow& now, const WorkerSpeeds& speeds
                     rows - static_cast<int>(std::max<size_t>(now.jobs.size(), 1)));
   add_jobs(page, now.jobs, std::max(rows - for_workers, 0));
   page.line("");
-  add_workers(page, now.workers, speeds);
+  add_workers(page, now.workers);
   std::vector<std::string> lines = page.take();
   if (static_cast<int>(lines.size()) > height) lines.resize(static_cast<size_t>(height));
   return lines;

@@ -1,8 +1,6 @@
 #pragma once
 
-#include <chrono>
 #include <cstdint>
-#include <map>
 #include <string>
 #include <vector>
 
@@ -18,28 +16,10 @@ struct FarmNow {
   int64_t time_ms = 0;  ///< since 1970, UTC
 };
 
-/// How fast each worker is, from what it has done in between; kept over looks.
-class WorkerSpeeds {
- public:
-  void note(const FarmNow& now);
-  /// Samples per second lately; 0: unknown.
-  double of(uint64_t worker) const;
-  double all() const;
-
- private:
-  struct One {
-    uint64_t samples = 0;
-    int64_t time_ms = 0;
-    double speed = 0;
-  };
-  std::map<uint64_t, One> workers_;
-};
-
 /// What `hyades top` shows: lines of at most `width` columns, at most `height` of them. Jobs that
 /// run come first, then by priority; workers by what they do. Lines that do not fit are counted.
 /// Colours are ANSI's, where `colors`.
-std::vector<std::string> top_page(const FarmNow& now, const WorkerSpeeds& speeds,
-                                  const std::string& coordinator, int width, int height,
-                                  bool colors);
+std::vector<std::string> top_page(const FarmNow& now, const std::string& coordinator, int width,
+                                  int height, bool colors);
 
 }  // namespace hyades::cli

@@ -55,7 +55,7 @@ coordinator::Progress progress_of(const v1::Job& job) {
   progress.seconds_left = job.seconds_left();
   if (job.has_noise()) progress.noise = job.noise();
   progress.noise_aim = job.noise_aim();
-  progress.trouble = job.state() == v1::JOB_STATE_PAUSED ? "paused" : core::printable(job.reason());
+  progress.trouble = job_trouble(job);
   return progress;
 }
 
@@ -92,7 +92,7 @@ class Watcher {
       if (!quiet_) {
         std::fprintf(stderr, "job %lu is done: %s in %s; hyades fetch %lu brings them\n", job_.id(),
                      core::counted(job_.frames_done(), "frame").c_str(),
-                     core::format_duration(seconds_taken(job_)).c_str(), job_.id());
+                     core::format_duration(seconds_taken(job_).value_or(0)).c_str(), job_.id());
       }
       return std::nullopt;
     }

@@ -25,7 +25,11 @@ void print_workers(const v1::WorkersResponse& response) {
   std::vector<std::vector<std::string>> rows = {{"id", "name", "state", "threads", "units out",
                                                  "done", "failed", "class", "tags", "heard",
                                                  "reason"}};
-  for (const v1::Worker& worker : response.workers()) {
+  std::vector<v1::Worker> workers(response.workers().begin(), response.workers().end());
+  std::stable_sort(workers.begin(), workers.end(), [](const v1::Worker& a, const v1::Worker& b) {
+    return is_before(a.name(), b.name());
+  });
+  for (const v1::Worker& worker : workers) {
     rows.push_back({std::to_string(worker.id()), worker.name(), state_name(worker.state()),
                     std::to_string(worker.threads()), std::to_string(worker.leased()),
                     core::format_count(worker.units_done()), std::to_string(worker.units_failed()),

@@ -94,6 +94,18 @@ TEST_F(Client, WatchEndsWithTheJob) {
   EXPECT_EQ(run(watch_command, at({"1", "--quiet"})).status, kCancelled);
 }
 
+TEST_F(Client, WatchSaysAtOnceWhyAJobWaitsAndOnce) {
+  const std::string why = "it asks for workers with the tag 'gpu', and none is there";
+  const auto waiting = event(v1::JOB_STATE_RUNNING, 0, why);
+  farm_.events = {event(v1::JOB_STATE_RUNNING, 0), waiting, waiting,
+                  event(v1::JOB_STATE_DONE, 100)};
+  add_job("tri");
+  const Ran ran = run(watch_command, at({"1"}));
+  EXPECT_TRUE(has(ran.err, "tri    0 %  frame 1/2  waiting for its turn\n")) << ran.err;
+  EXPECT_TRUE(has(ran.err, "frame 1/2  " + why + "\n")) << ran.err;
+  EXPECT_EQ(ran.err.find(why), ran.err.rfind(why)) << ran.err;
+}
+
 TEST_F(Client, SubmitAndWatchPrintsTheJobAsItEnds) {
   farm_.events = {event(v1::JOB_STATE_RUNNING, 50), event(v1::JOB_STATE_FAILED, 60)};
   const Ran ran = submit({"--watch", "--json"});

@@ -34,6 +34,19 @@ TEST_F(Client, JobsThatEndedLastAreListedWithWhatTheyTook) {
   EXPECT_FALSE(has(text, "old5")) << "that ended before five others: " << text;
 }
 
+TEST_F(Client, WaitingIsNotWhatAJobTook) {
+  add_job("ocean");
+  v1::Job& job = farm_.jobs[0];
+  job.set_samples(100);
+  EXPECT_TRUE(has(run(status_command, at({"ocean"})).out, "took       -\ncore-hours -\n"));
+  job.set_begun_ms(1000);
+  job.set_samples_done(40);
+  job.set_busy_seconds(1.25);
+  job.set_core_seconds(2.5);
+  const std::string text = run(status_command, at({"ocean"})).out;
+  EXPECT_TRUE(has(text, "took       1.25 s\ncore-hours < 0.01\n")) << text;
+}
+
 TEST_F(Client, AJobThatNobodyRendersWaits) {
   add_job("ocean");
   farm_.jobs[0].set_samples(100);
@@ -43,6 +56,7 @@ TEST_F(Client, AJobThatNobodyRendersWaits) {
     EXPECT_TRUE(has(text, "waiting")) << text;
     EXPECT_FALSE(has(text, "1 min 17 s")) << text;
   }
+  EXPECT_TRUE(has(run(priority_command, at({"ocean", "5"})).out, "is waiting, priority 5"));
   farm_.jobs[0].set_leased(2);
   EXPECT_TRUE(has(run(jobs_command, at({})).out, "running"));
   EXPECT_TRUE(has(run(status_command, at({"ocean"})).out, "1 min 17 s left"));
