@@ -5,6 +5,7 @@ import { recall, remember } from './memory.js';
 import { counted } from './format.js';
 import { icon } from './icons.js';
 import { me } from './me.js';
+import { lookOf } from './job_state.js';
 import { to } from './router.js';
 
 const MOST = 4;
@@ -46,7 +47,8 @@ export function alertsOf({ info, jobs, workers, me }, now = Date.now()) {
         what: job.name,
         text: `has failed${job.reason ? `: ${job.reason}` : ''}`,
       });
-    else if (isOpen(job) && job.reason)
+    // That nobody is there is told once, where the workers are.
+    else if (isOpen(job) && job.reason && !(lookOf(job) === 'waiting' && info?.workers === 0))
       list.push({ key: `j${job.id}r${job.reason}`, href, what: job.name, text: job.reason });
     else if (isOpen(job) && job.frames_failed > 0)
       list.push({

@@ -52,6 +52,11 @@ export function ask({ title, body = [], buttons, testid = 'dialog', check }) {
   });
 }
 
+/** Closes all questions, as Escape does: another page is shown. */
+export function closeDialogs() {
+  for (const dialog of document.querySelectorAll('dialog[open]')) dialog.close('');
+}
+
 /** Asks before something happens; true where it is to. */
 export async function confirm({ title, body, action, danger = false }) {
   const answer = await ask({

@@ -87,6 +87,16 @@ export function say(text) {
   while (speech.children.length > 20) speech.firstChild.remove();
 }
 
+/** A toast that is younger tells of what has led to another page. */
+const TOAST_STAYS = 1000;
+
+/** Takes away what was said of the page before. */
+export function clearToasts(now = Date.now()) {
+  for (const node of [...document.getElementById('toasts').children]) {
+    if (now - node.shownAt > TOAST_STAYS) node.remove();
+  }
+}
+
 /** Shows a short message for some seconds. Kinds: 'good', 'bad'. */
 export function toast(text, kind = 'good') {
   const node = h(
@@ -95,6 +105,7 @@ export function toast(text, kind = 'good') {
     h('p', { text }),
     h('button', { class: 'plain', type: 'button', 'aria-label': 'Dismiss', text: '×', onclick: () => node.remove() }),
   );
+  node.shownAt = Date.now();
   document.getElementById('toasts').append(node);
   setTimeout(() => node.remove(), kind === 'bad' ? 12000 : 5000);
 }

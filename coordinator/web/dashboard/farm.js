@@ -8,7 +8,7 @@ import { flowChart } from './chart.js';
 import { Alerts } from './alerts.js';
 import { noJobs, noWorkers, welcome, workerCommand } from './welcome.js';
 import { preview } from './preview.js';
-import { leftOf, share, tookOf } from './job_state.js';
+import { doneOf, leftOf, share } from './job_state.js';
 import { starMap } from './stars.js';
 import { Thumbs } from './thumbs.js';
 import { to } from './router.js';
@@ -23,6 +23,13 @@ export const inOrder = (jobs) =>
   [...jobs]
     .filter(isOpen)
     .sort((a, b) => (a.state === 'paused') - (b.state === 'paused') || b.priority - a.priority || a.id - b.id);
+
+/** What is said where nothing is rendered, of so many jobs: null (something is), 'held', 'alone', 'ended', 'empty'. */
+export function noneKind({ running, open, jobs }, workers) {
+  if (running > 0) return null;
+  if (open > 0) return workers > 0 ? 'held' : 'alone';
+  return jobs > 0 ? 'ended' : 'empty';
+}
 
 class FarmView {
   constructor() {
@@ -159,7 +166,7 @@ class FarmView {
       (job) => job.id,
       (job) => this.card(job),
     );
-    const none = running.length > 0 ? null : open.length > 0 ? (farm.info.workers > 0 ? 'held' : 'alone') : 'empty';
+    const none = noneKind({ running: running.length, open: open.length, jobs: farm.jobs.size }, farm.info.workers);
     if (this.noneKind !== none) {
       this.noneKind = none;
       this.nowNone.replaceChildren(
@@ -167,14 +174,14 @@ class FarmView {
           ? []
           : [
               none === 'empty'
-                ? farm.jobs.size === 0
-                  ? noJobs()
-                  : nothing(
+                ? noJobs()
+                : none === 'ended'
+                  ? nothing(
                       'Nothing to do',
                       h('p', { class: 'soft', text: 'All jobs have ended.' }),
                       h('a', { class: 'button primary', href: to('submit'), text: 'Submit a job' }),
                     )
-                : nothing(
+                  : nothing(
                     'Nothing is being rendered',
                     h('p', {
                       class: 'soft',
@@ -246,7 +253,7 @@ class FarmView {
             sub,
             now.reason && now.state === 'failed'
               ? now.reason
-              : `${moment(now.ended_ms)} · ${counted(now.frames, 'frame')} in ${duration(tookOf(now))}`,
+              : `${moment(now.ended_ms)} · ${doneOf(now)}`,
           );
         };
         return node;

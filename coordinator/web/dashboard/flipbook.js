@@ -15,12 +15,19 @@ const AGAIN_AFTER = 3000;
 /** Pictures ready to be shown take memory: this much of it. */
 const MOST_BYTES = 300e6;
 const SPEEDS = [1, 2, 4, 6, 8, 12, 15, 24, 25, 30, 48, 60];
+/** Of a job that says nothing. */
+const USUAL_FPS = 24;
+
+/** The frames per second to choose from, with those of the job and those that are shown. */
+export const speedsWith = (...more) => [...new Set([...SPEEDS, ...more.filter((fps) => fps > 0)])].sort((a, b) => a - b);
 
 class Flipbook {
   constructor(route, { retitle }) {
     this.id = route.job;
     this.retitle = retitle;
-    this.fps = SPEEDS.includes(Number(route.query.fps)) ? Number(route.query.fps) : Number(recall('fps', '24')) || 24;
+    /** What the person has chosen; else it is the job's. */
+    this.chosen = Number(route.query.fps) > 0 ? Number(route.query.fps) : null;
+    this.fps = this.chosen ?? USUAL_FPS;
     this.at = 0;
     this.wanted = Number(route.query.frame);
     this.playing = false;
@@ -90,9 +97,8 @@ class Flipbook {
     this.speed = h(
       'select',
       { 'aria-label': 'Frames per second', testid: 'fps', onchange: () => this.setFps(Number(this.speed.value)) },
-      SPEEDS.map((fps) => h('option', { value: fps, text: `${fps} fps` })),
     );
-    this.speed.value = this.fps;
+    this.drawSpeeds();
     this.loop = h('input', { type: 'checkbox', checked: true, testid: 'loop' });
     this.size = h(
       'select',
@@ -144,9 +150,13 @@ class Flipbook {
       {
         keys: '+|=',
         what: 'Faster',
-        run: () => this.setFps(SPEEDS[Math.min(SPEEDS.length - 1, SPEEDS.indexOf(this.fps) + 1)]),
+        run: () => this.setFps(this.speeds[Math.min(this.speeds.length - 1, this.speeds.indexOf(this.fps) + 1)]),
       },
-      { keys: '-', what: 'Slower', run: () => this.setFps(SPEEDS[Math.max(0, SPEEDS.indexOf(this.fps) - 1)]) },
+      {
+        keys: '-',
+        what: 'Slower',
+        run: () => this.setFps(this.speeds[Math.max(0, this.speeds.indexOf(this.fps) - 1)]),
+      },
       { keys: 'Enter', what: 'Look at this frame', run: () => this.open.click() },
       {
         keys: 'Escape',
@@ -170,6 +180,7 @@ class Flipbook {
     }
     setText(this.back, state.job?.name ?? `Job ${this.id}`);
     this.retitle();
+    this.drawSpeeds();
     const now = this.numbers[this.at];
     this.numbers = state.numbers.filter(
       (number) => state.frames.get(number).samples_done > 0 || state.frames.get(number).state === 'done',
@@ -198,10 +209,21 @@ class Flipbook {
   }
 
   setFps(fps) {
-    this.fps = fps;
-    this.speed.value = fps;
-    remember('fps', String(fps));
-    replaceQuery({ fps: fps === 24 ? '' : fps });
+    this.chosen = fps;
+    this.drawSpeeds();
+    replaceQuery({ fps: fps === this.usual ? '' : fps });
+  }
+
+  // The job's own speed is known when the job is.
+  drawSpeeds() {
+    this.usual = Math.round((this.state.job?.frame_rate || USUAL_FPS) * 1000) / 1000;
+    this.fps = this.chosen ?? this.usual;
+    const speeds = speedsWith(this.usual, this.fps);
+    if (this.speeds?.join() !== speeds.join()) {
+      this.speeds = speeds;
+      this.speed.replaceChildren(...speeds.map((fps) => h('option', { value: fps, text: `${fps} fps` })));
+    }
+    this.speed.value = this.fps;
   }
 
   toggle() {

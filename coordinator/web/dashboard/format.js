@@ -27,15 +27,15 @@ export const whole = (value) => Math.round(value).toLocaleString('en-GB');
 /** 1 -> '1 frame', 3 -> '3 frames'. */
 export const counted = (count, noun) => `${whole(count)} ${noun}${count === 1 ? '' : 's'}`;
 
-/** Samples per second; '–' where unknown. */
+/** Samples per second: '12.3 Msamples/s'; '–' where unknown. */
 export function rate(value) {
   if (!(value > 0)) return '–';
   const text = short(value);
-  return `${text}${/[a-zA-Z]$/.test(text) ? '' : ' '}S/s`;
+  return `${text}${/[a-zA-Z]$/.test(text) ? '' : ' '}samples/s`;
 }
 
-/** Samples per second in words: '12.3 Msamples/s'. */
-export const rateInWords = (value) => (value > 0 ? rate(value).replace(/S\/s$/, 'samples/s') : '0 samples/s');
+/** The same where none is known to be none: '0 samples/s'. */
+export const rateInWords = (value) => (value > 0 ? rate(value) : '0 samples/s');
 
 /** 1536 -> '1.50 KiB'. */
 export function bytes(value) {
@@ -128,6 +128,16 @@ export function value(number) {
     .toPrecision(4)
     .replace(/(\.\d*?)0+$/, '$1')
     .replace(/\.$/, '');
+}
+
+/** A noise with two digits, never in powers of ten: '0.016', '1.6', '160'. */
+export function noise(number) {
+  if (!Number.isFinite(number)) return '–';
+  if (number >= 9.95) return number.toFixed(0);
+  if (number >= 0.995) return number.toFixed(1);
+  if (!(number > 0)) return '0';
+  if (number < 1e-6) return '< 0.000001';
+  return number.toFixed(1 - Math.floor(Math.log10(number))).replace(/0+$/, '');
 }
 
 /** A digest by its beginning; other texts as they are. */

@@ -10,10 +10,10 @@ import {
   duration,
   moment,
   money,
+  noise,
   percent,
   rateInWords,
   short,
-  value,
   whole,
 } from './format.js';
 import { h, keyed, say, setText } from './dom.js';
@@ -108,7 +108,7 @@ class JobView {
       left: figure('Time left', 'job-left'),
       speed: figure('Speed', 'job-speed', 'Samples per second, lately'),
       leased: figure('Units out', 'job-leased', 'Units that are with workers'),
-      took: figure('Since submit', 'job-took'),
+      took: figure('Took', 'job-took', 'Waiting does not count'),
       hours: figure('Core-hours', 'job-hours', 'What threads took for the results that counted'),
       cost: figure('Cost', 'job-cost'),
       priority: figure('Priority', 'job-priority'),
@@ -288,7 +288,7 @@ class JobView {
     figures.progress.set(percent(part));
     figures.progress.title = `${short(job.samples_done)} of ${short(job.samples)} samples`;
     figures.noise.hidden = job.noise === undefined || job.noise === null;
-    figures.noise.set(`${value(job.noise)}${job.noise_aim > 0 ? ` (aim ${value(job.noise_aim)})` : ''}`);
+    figures.noise.set(`${noise(job.noise)}${job.noise_aim > 0 ? ` (aim ${noise(job.noise_aim)})` : ''}`);
     figures.noise.title = 'How far pixels are off on average, in parts of white: 0.02 is 2 % where the picture is white';
     figures.frames.set(
       `${whole(job.frames_done)} / ${whole(job.frames)}${job.frames_failed ? `, ${whole(job.frames_failed)} failed` : ''}`,
@@ -300,8 +300,9 @@ class JobView {
     const runs = lookOf(job) === 'running' && job.samples_per_second > 0;
     figures.speed.set(runs ? rateInWords(job.samples_per_second) : '–');
     figures.leased.set(open ? whole(job.leased) : '–');
-    setText(figures.took.firstChild, open && !job.begun_ms ? 'Since submit' : 'Took');
-    figures.took.set(duration(tookOf(job)));
+    const fresh = open && !job.begun_ms;
+    setText(figures.took.firstChild, fresh ? 'Since submit' : 'Took');
+    figures.took.set(duration(fresh ? (Date.now() - job.submitted_ms) / 1000 : tookOf(job)));
     figures.hours.set(coreHours(job.core_seconds));
     const price = farm.info?.price_per_core_hour ?? 0;
     figures.cost.hidden = price <= 0;

@@ -1,6 +1,7 @@
 // One job as it is now: shared by the views that look at it.
 import * as api from './api.js';
 import { farm, isOpen, onFarm } from './farm_state.js';
+import { counted, duration, whole } from './format.js';
 import { listen } from './live.js';
 
 /** A job that no view looks at is kept for so long: going from the grid to a frame and back costs nothing. */
@@ -125,8 +126,23 @@ export const share = (job) => (job.samples > 0 ? Math.min(1, job.samples_done / 
 /** What people call its state: a job that runs is 'waiting' while no worker has any of it. */
 export const lookOf = (job) => (job.state === 'running' && job.leased === 0 && share(job) < 1 ? 'waiting' : job.state);
 
-/** Seconds from when somebody began it (before: from its submission) to its end, or to now. */
-export const tookOf = (job, now = Date.now()) => ((job.ended_ms || now) - (job.begun_ms || job.submitted_ms)) / 1000;
+/**
+ * Seconds in which somebody worked on it (of one that an older coordinator ended: from its beginning to its end); NaN of one that
+ * nobody has begun.
+ */
+export function tookOf(job, now = Date.now()) {
+  if (job.busy_seconds > 0) return job.busy_seconds;
+  if (!job.begun_ms && !job.samples_done && !job.frames_done) return NaN;
+  return ((job.ended_ms || now) - (job.begun_ms || job.submitted_ms)) / 1000;
+}
+
+/** What was done of one that has ended: '24 frames in 12 min 03 s', '3 of 24 frames in 2 min 10 s', '0 of 1 frame'. */
+export function doneOf(job) {
+  const all = job.frames_done === job.frames;
+  const frames = all ? counted(job.frames, 'frame') : `${whole(job.frames_done)} of ${counted(job.frames, 'frame')}`;
+  const took = tookOf(job);
+  return Number.isFinite(took) ? `${frames} in ${duration(took)}` : frames;
+}
 
 /** Longer is not told: it only says that next to nothing was rendered lately. */
 const LONGEST_LEFT = 400 * 86400;

@@ -145,11 +145,11 @@ const columnsWith = (thumbs) => [
   },
   {
     key: 'took',
-    label: 'Since submit',
+    label: 'Took',
     kind: 'num',
     drop: 3,
     always: true,
-    sort: (job) => tookOf(job),
+    sort: (job) => tookOf(job) || -1,
     cell: (td, job) => setText(td, duration(tookOf(job))),
   },
   {

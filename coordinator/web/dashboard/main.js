@@ -1,6 +1,6 @@
 // The page: navigation, the view that the address asks for, what is true everywhere.
 import { farm, onFarm, startFarm } from './farm_state.js';
-import { h, setText } from './dom.js';
+import { clearToasts, h, setText } from './dom.js';
 import { help, shortcuts } from './keys.js';
 import { icon, mark } from './icons.js';
 import { lost, onConnection } from './live.js';
@@ -8,6 +8,7 @@ import { nextTheme, setTheme, theme } from './theme.js';
 import { parse, to } from './router.js';
 import { onMe, whoAmI } from './me.js';
 import { signOutButton, startSession } from './session.js';
+import { closeDialogs } from './dialog.js';
 import { counted } from './format.js';
 import { enter, scrollBack } from './place.js';
 import { farmView } from './farm.js';
@@ -221,5 +222,9 @@ addEventListener('hyades-signed-in', () => {
 });
 startFarm();
 offerDrop();
-addEventListener('hashchange', () => show());
+addEventListener('hashchange', () => {
+  closeDialogs();
+  clearToasts();
+  show();
+});
 show(true);

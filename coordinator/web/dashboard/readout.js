@@ -2,7 +2,7 @@
 import { h, setText } from './dom.js';
 import { heat, luminance, relativeError } from './tone.js';
 import { kindOf, NOISE } from './layers.js';
-import { percent, short, value, whole } from './format.js';
+import { noise, percent, short, value, whole } from './format.js';
 import { frameShare } from './job_state.js';
 import { pixel } from './half.js';
 
@@ -57,7 +57,7 @@ export class Readout {
         ? `${each(frame.samples_done)} of ${each(frame.samples)} samples per pixel`
         : `${short(frame.samples_done)} samples`,
       frame.state === 'rendering' && percent(frameShare(frame)),
-      frame.noise !== undefined && frame.noise !== null && `noise ${value(frame.noise)}`,
+      frame.noise !== undefined && frame.noise !== null && `noise ${noise(frame.noise)}`,
       main?.exact === false && 'from a finished file of 8 bits',
       frame.reason,
     ];
@@ -76,7 +76,7 @@ export function drawLegend(box, layer, { low, high, middle }) {
   const kind = kindOf(layer);
   box.hidden = !ABOUT[kind] || layer === 'alpha';
   if (box.hidden) return;
-  const text = (v) => (kind === 'noise' ? `${value(v * 100)} %` : value(v));
+  const text = (v) => (kind === 'noise' ? `${noise(v * 100)} %` : value(v));
   const scale = h('canvas', { width: 128, height: 1, 'aria-hidden': 'true' });
   const pen = scale.getContext('2d');
   for (let i = 0; i < 128; ++i) {

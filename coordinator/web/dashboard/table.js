@@ -4,15 +4,27 @@ import { h, oncePerFrame, setAttribute } from './dom.js';
 const MARGIN_ROWS = 8;
 const letters = new Intl.Collator('en', { numeric: true, sensitivity: 'base' });
 
+/** The rows in order of `by(row)`, `down` or up; what is alike as Table's `tie` and `rowKey` say. Digits in texts are numbers. */
+export function sorted(rows, { by, down, tie, rowKey }) {
+  const sign = down ? -1 : 1;
+  const keyed = rows.map((row) => [by(row), row]);
+  keyed.sort(([a, x], [b, y]) => {
+    const order = typeof a === 'string' ? letters.compare(a, b) : a - b;
+    return order * sign || (tie ? letters.compare(tie(x), tie(y)) : 0) || (rowKey(y) > rowKey(x) ? 1 : -1);
+  });
+  return keyed.map(([, row]) => row);
+}
+
 /**
  * columns: [{key, label, sort(row), up, cell(td, row), narrow}]: `sort` gives what to sort by (absent: not by this one), `up` that
  * it begins with the smallest, `cell` fills a cell (called again when the row is another object), `drop` 1..3: left out on narrow screens,
  * 3 first, `spoken` a label for those who cannot see that none is needed. rowKey(row).
+ * `tie(row)`: a text by which rows are sorted that are alike otherwise; without it those with the greater key come first.
  * `onGone(tr)` is called when a row leaves the screen. `cards`: on phones rows are cards, which the style lays out. The height of rows is the style's `--row`.
  */
 export class Table {
-  constructor({ columns, rowKey, label, sort, testid, onSort, chosen, onChosen, onGone, empty, cards = false }) {
-    Object.assign(this, { columns, rowKey, chosen, onChosen, onSort, onGone, empty });
+  constructor({ columns, rowKey, label, sort, tie, testid, onSort, chosen, onChosen, onGone, empty, cards = false }) {
+    Object.assign(this, { columns, rowKey, tie, chosen, onChosen, onSort, onGone, empty });
     this.sort = sort;
     this.rows = [];
     this.shown = new Map();
@@ -92,13 +104,7 @@ export class Table {
   setRows(rows) {
     const by = this.columns.find(({ key }) => key === this.sort.key)?.sort;
     if (by) {
-      const sign = this.sort.down ? -1 : 1;
-      const keyed = rows.map((row) => [by(row), row]);
-      keyed.sort(([a, x], [b, y]) => {
-        const order = typeof a === 'string' ? letters.compare(a, b) : a - b;
-        return order * sign || (this.rowKey(y) > this.rowKey(x) ? 1 : -1);
-      });
-      rows = keyed.map(([, row]) => row);
+      rows = sorted(rows, { by, down: this.sort.down, tie: this.tie, rowKey: this.rowKey });
     }
     this.rows = rows;
     setAttribute(this.table, 'aria-rowcount', rows.length + 1);

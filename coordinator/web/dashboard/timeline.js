@@ -53,6 +53,13 @@ const workTable = (span) =>
     ],
   });
 
+/** Why there is nothing to be seen of a job. */
+export function noneWhy(job) {
+  if (job.samples_done > 0)
+    return 'What was rendered when is kept of the latest jobs, until the coordinator is started again: of this one nothing is known.';
+  return isOpen(job) ? 'Nothing has been rendered yet.' : 'Nothing was rendered.';
+}
+
 class Timeline {
   constructor(state) {
     this.state = state;
@@ -68,7 +75,7 @@ class Timeline {
       testid: 'timeline-all',
       onclick: () => this.gantt.whole(),
     });
-    this.none = h('p', { class: 'soft pad', text: 'Nothing has been rendered yet.' });
+    this.none = h('p', { class: 'soft pad', testid: 'timeline-none', text: 'Asking…' });
     this.box = h(
       'div',
       { class: 'timeline', hidden: true },
@@ -87,6 +94,7 @@ class Timeline {
         const news = await this.timed.more(this.stop.signal);
         this.complete = !open;
         if (news) this.take(this.timed);
+        else if (this.state.job) setText(this.none, noneWhy(this.state.job));
       } catch {
         // Asked again soon.
       }

@@ -54,7 +54,7 @@ function nameCell(td, worker) {
   const [name, sub] = td.firstChild.children;
   setText(name, worker.name);
   setText(sub, worker.reason || [worker.host, ...worker.tags].join(' · '));
-  sub.classList.toggle('warn', Boolean(worker.reason));
+  sub.classList.toggle('warn', Boolean(worker.reason) && worker.state !== 'active');
   sub.title = worker.reason;
 }
 
@@ -231,5 +231,6 @@ export const workerTable = (empty) =>
     testid: 'workers-table',
     cards: true,
     sort: { key: 'state', down: false },
+    tie: (worker) => worker.name,
     empty,
   });

@@ -10,6 +10,7 @@ import {
   listed,
   moment,
   money,
+  noise,
   percent,
   rate,
   rateInWords,
@@ -34,8 +35,8 @@ test('numbers have three digits and a unit', () => {
   ]);
   all(rate, [
     [0, '–'],
-    [25e6, '25.0 MS/s'],
-    [640, '640 S/s'],
+    [25e6, '25.0 Msamples/s'],
+    [640, '640 samples/s'],
     [-1, '–'],
   ]);
   all(rateInWords, [
@@ -97,6 +98,19 @@ test('pixel values', () => {
     [Infinity, '∞'],
     [100, '100'],
     [1234, '1234'],
+  ]);
+});
+
+test('noise is never in powers of ten', () => {
+  all(noise, [
+    [0.0158, '0.016'],
+    [0.5, '0.5'],
+    [0.999, '1.0'],
+    [160.4, '160'],
+    [2.1e-5, '0.000021'],
+    [1e-9, '< 0.000001'],
+    [0, '0'],
+    [NaN, '–'],
   ]);
 });
 

@@ -6,7 +6,7 @@ Object.assign(globalThis, {
   addEventListener: () => {},
   localStorage: { getItem: () => null, setItem: () => {}, removeItem: () => {} },
 });
-const { leftOf, lookOf } = await import('../../../../coordinator/web/dashboard/job_state.js');
+const { doneOf, leftOf, lookOf, tookOf } = await import('../../../../coordinator/web/dashboard/job_state.js');
 const { placeOf, skyMap, FIGURE } = await import('../../../../coordinator/web/dashboard/star_places.js');
 
 const job = (more) => ({ state: 'running', leased: 2, samples: 100, samples_done: 40, seconds_left: 60, ...more });
@@ -25,6 +25,17 @@ test('the time left is told only where somebody renders, and never in years', ()
   assert.equal(leftOf(job({ leased: 0 })), Infinity);
   assert.equal(leftOf(job({ seconds_left: 1e15 })), Infinity);
   assert.equal(leftOf(job({ state: 'paused' })), Infinity);
+});
+
+test('what a job took is what it was worked on', () => {
+  const ended = { submitted_ms: 1000, begun_ms: 60000, ended_ms: 100000, frames: 4, frames_done: 4, samples_done: 9 };
+  assert.equal(tookOf({ ...ended, busy_seconds: 7.5 }), 7.5);
+  assert.equal(tookOf({ ...ended, busy_seconds: 0 }), 40, 'an older coordinator has ended it');
+  assert.equal(doneOf({ ...ended, busy_seconds: 7.5 }), '4 frames in 8 s');
+  assert.equal(doneOf({ ...ended, busy_seconds: 7.5, frames_done: 3 }), '3 of 4 frames in 8 s');
+  const untouched = { submitted_ms: 1000, begun_ms: 0, ended_ms: 100000, frames: 1, frames_done: 0, samples_done: 0 };
+  assert.ok(Number.isNaN(tookOf(untouched)));
+  assert.equal(doneOf(untouched), '0 of 1 frame');
 });
 
 test('all stars lie on the map, east to the left and north above', () => {

@@ -13,7 +13,10 @@ Object.assign(globalThis, {
   localStorage: { getItem: () => null, setItem: () => {}, removeItem: () => {} },
 });
 const { alertsOf } = await import('../../../../coordinator/web/dashboard/alerts.js');
-const { inOrder } = await import('../../../../coordinator/web/dashboard/farm.js');
+const { inOrder, noneKind } = await import('../../../../coordinator/web/dashboard/farm.js');
+const { noneWhy } = await import('../../../../coordinator/web/dashboard/timeline.js');
+const { sorted } = await import('../../../../coordinator/web/dashboard/table.js');
+const { speedsWith } = await import('../../../../coordinator/web/dashboard/flipbook.js');
 const { byTile, byWorker } = await import('../../../../coordinator/web/dashboard/units.js');
 const { grouped, kindOf, nameOf, rangeOf, sourcesOf } = await import('../../../../coordinator/web/dashboard/layers.js');
 const { toneOf } = await import('../../../../coordinator/web/dashboard/viewer.js');
@@ -60,6 +63,40 @@ test('what needs a person comes with the worst first', () => {
   assert.equal(list[0].text, 'the disk is full');
   assert.match(list[3].text, /^Your token expires on .* in 3 days/);
   assert.match(list[6].text, /2 frames failed/);
+});
+
+test('that nobody is there is not told of each job that waits', () => {
+  const waits = job(1, { reason: 'no worker is there that could take units', leased: 0, samples: 9, samples_done: 0 });
+  const told = (info) => alertsOf({ info, workers: new Map(), jobs: new Map([[1, waits]]), me: {} }).length;
+  assert.equal(told({ workers: 0 }), 0);
+  assert.equal(told({ workers: 1 }), 1);
+});
+
+test('a farm whose jobs have ended has had some', () => {
+  assert.equal(noneKind({ running: 1, open: 1, jobs: 1 }, 1), null);
+  assert.equal(noneKind({ running: 0, open: 1, jobs: 1 }, 1), 'held');
+  assert.equal(noneKind({ running: 0, open: 1, jobs: 1 }, 0), 'alone');
+  assert.equal(noneKind({ running: 0, open: 0, jobs: 1 }, 1), 'ended');
+  assert.equal(noneKind({ running: 0, open: 0, jobs: 0 }, 1), 'empty');
+});
+
+test('a timeline that is lost is not one of nothing', () => {
+  assert.match(noneWhy(job(1, { state: 'done', samples_done: 5 })), /until the coordinator is started again/);
+  assert.match(noneWhy(job(1, { samples_done: 0 })), /yet/);
+  assert.equal(noneWhy(job(1, { state: 'cancelled', samples_done: 0 })), 'Nothing was rendered.');
+});
+
+test('workers that do the same are in order of their names', () => {
+  const rows = [worker(1, { name: 'w10' }), worker(2, { name: 'w2' }), worker(3, { name: 'w1' })];
+  const names = (more) =>
+    sorted(rows, { by: () => 1, rowKey: ({ id }) => id, ...more }).map(({ name }) => name);
+  assert.deepEqual(names({ tie: ({ name }) => name }), ['w1', 'w2', 'w10']);
+  assert.deepEqual(names({}), ['w1', 'w2', 'w10'], 'the greater key');
+});
+
+test("a flip-book has the job's speed among others", () => {
+  assert.ok(speedsWith(6).includes(6));
+  assert.deepEqual(speedsWith(12.5, 12.5).slice(4, 7), [8, 12, 12.5]);
 });
 
 test('a name that no token has proven steers no job', () => {
