@@ -168,9 +168,10 @@ void print_contents(const core::Job& job, const core::Scene& scene, double sampl
   std::printf("  frames     %s of %d x %d%s\n",
               core::format_count(static_cast<uint64_t>(frames)).c_str(), window.width(),
               window.height(), job.film.crop ? " (cropped)" : "");
-  std::printf("  objects    %s, %s triangles, %zu lights\n",
+  std::printf("  objects    %s, %s triangles, %s\n",
               core::format_count(scene.objects.size()).c_str(),
-              core::format_count(scene.triangles).c_str(), scene.lights.size());
+              core::format_count(scene.triangles).c_str(),
+              core::counted(scene.lights.size(), "light").c_str());
   if (core::noise_threshold(job).adaptive()) {
     std::printf("  samples    at most %u per pixel, %s in all; tiles stop at a noise of %g\n",
                 job.sampling.samples, samples_in_words(samples).c_str(),

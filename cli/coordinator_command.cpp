@@ -401,9 +401,9 @@ void add_limits(CLI::App& app, ControllerOptions& options) {
              throw CLI::ValidationError("--price", wrong);
            }
          },
-         "what an hour of one rendering thread costs, and in which currency: jobs tell what they "
-         "have cost")
-      ->type_name("PER_CORE_HOUR[:CURRENCY]");
+         "what an hour of one rendering thread costs, with or without the currency, such as "
+         "0.04:EUR: jobs tell what they have cost")
+      ->type_name("PRICE");
   add_seconds(app, "--asset-grace", options.asset_grace, {0.0, 1e9},
               "seconds that files which no job needs any more stay after their last use");
 }

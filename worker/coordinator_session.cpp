@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "core/base/text.h"
 #include "core/base/wall_clock.h"
 #include "farm/wire.h"
 
@@ -127,10 +128,10 @@ void CoordinatorSession::ended(StreamEnd end, const std::string& reason, millise
   if (finished_ || trouble == told_trouble_) return;
   worker_.log.note(
       LogLevel::warning,
-      fmt::format(
-          "no connection to {} ({}); {} units in hand, {} films not acknowledged; trying again",
-          worker_.options.coordinator.address, trouble, worker_.machine.in_hand(),
-          worker_.machine.unacknowledged()));
+      fmt::format("no connection to {} ({}); {} in hand, {} not acknowledged; trying again",
+                  worker_.options.coordinator.address, trouble,
+                  core::counted(worker_.machine.in_hand(), "unit"),
+                  core::counted(worker_.machine.unacknowledged(), "film")));
   told_trouble_ = std::move(trouble);
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cstddef>
 #include <utility>
 
 #include <fmt/format.h>
@@ -96,9 +97,10 @@ void Departure::try_to_go(TimePoint now) {
   const bool late = leave_by_ && now >= *leave_by_;
   if (!goodbye_by_ && (worker_.machine.empty() || late)) {
     worker_.machine.give_back_rest(reason_);
-    if (worker_.machine.unacknowledged() > 0) {
-      worker_.log.note(LogLevel::warning, fmt::format("{} films were not acknowledged in time",
-                                                      worker_.machine.unacknowledged()));
+    if (const size_t films = worker_.machine.unacknowledged(); films > 0) {
+      worker_.log.note(LogLevel::warning, core::counted(films, "film") +
+                                              (films == 1 ? " was" : " were") +
+                                              " not acknowledged in time");
     }
     session_.finish();
     goodbye_by_ = now + kGoodbye;

@@ -6,8 +6,7 @@
 #include <map>
 #include <utility>
 
-#include <fmt/format.h>
-
+#include "core/base/text.h"
 #include "worker/state_machine.h"
 
 namespace hyades::worker {
@@ -51,9 +50,10 @@ void StateMachine::fence(TimePoint now) {
   }
   renewed_.reset();
   if (dropped > 0) {
-    ports_.note(farm::LogLevel::warning,
-                fmt::format("out of contact for longer than a lease: {} units given up", dropped),
-                {});
+    ports_.note(
+        farm::LogLevel::warning,
+        "out of contact for longer than a lease: " + core::counted(dropped, "unit") + " given up",
+        {});
   }
 }
 

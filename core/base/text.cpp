@@ -14,6 +14,9 @@ namespace {
 // Longer names are never compared letter by letter: the work grows with the product of lengths.
 constexpr size_t kLongestName = 100;
 
+/// Of a noise that is told in digits.
+constexpr double kLeastNoise = 1e-6;
+
 char small(char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; }
 
 char folded(char c) { return c == '_' ? '-' : small(c); }
@@ -118,7 +121,14 @@ std::string format_sample_rate(double per_second) {
 
 std::string format_noise(double noise) {
   if (noise >= 9.95) return fmt::format("{:.0f}", noise);
-  return noise >= 0.995 ? fmt::format("{:.1f}", noise) : fmt::format("{:.2g}", noise);
+  if (noise >= 0.995) return fmt::format("{:.1f}", noise);
+  if (!(noise > 0.0)) return "0";
+  if (noise < kLeastNoise) return "< 0.000001";
+  if (noise >= 1e-4) return fmt::format("{:.2g}", noise);
+  const int decimals = 1 - static_cast<int>(std::floor(std::log10(noise)));
+  std::string text = fmt::format("{:.{}f}", noise, decimals);
+  text.erase(text.find_last_not_of('0') + 1);
+  return text;
 }
 
 std::string format_bytes(uint64_t bytes) {

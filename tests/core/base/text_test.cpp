@@ -104,6 +104,11 @@ TEST(Text, NoiseIsNeverInPowersOfTen) {
   EXPECT_EQ(format_noise(0.999), "1.0");
   EXPECT_EQ(format_noise(1.58), "1.6");
   EXPECT_EQ(format_noise(160.4), "160");
+  EXPECT_EQ(format_noise(0.000123), "0.00012");
+  EXPECT_EQ(format_noise(2.1e-5), "0.000021");
+  EXPECT_EQ(format_noise(9.96e-6), "0.00001");
+  EXPECT_EQ(format_noise(1e-9), "< 0.000001");
+  EXPECT_EQ(format_noise(0), "0");
 }
 
 }  // namespace
