@@ -49,7 +49,12 @@ export function alertsOf({ info, jobs, workers, me }, now = Date.now()) {
       });
     // That nobody is there is told once, where the workers are.
     else if (isOpen(job) && job.reason && !(lookOf(job) === 'waiting' && info?.workers === 0))
-      list.push({ key: `j${job.id}r${job.reason}`, href, what: job.name, text: job.reason });
+      list.push({
+        key: `j${job.id}r${job.reason}`,
+        href,
+        what: job.name,
+        text: lookOf(job) === 'waiting' ? `waits: ${job.reason}` : job.reason,
+      });
     else if (isOpen(job) && job.frames_failed > 0)
       list.push({
         key: `j${job.id}n${job.frames_failed}`,

@@ -3,7 +3,7 @@ import { s, setText } from './dom.js';
 import { clock, duration, rate, rateInWords } from './format.js';
 
 const HEIGHT = 210;
-const LEFT = 104;
+const LEFT = 118;
 const RIGHT = 14;
 const TOP = 12;
 const BOTTOM = 24;

@@ -149,7 +149,7 @@ class FarmView {
       this.skyNow,
       here.length === 0
         ? ''
-        : `${counted(here.length, 'worker')}, ${whole(here.reduce((sum, { threads }) => sum + threads, 0))} threads`,
+        : `${counted(here.length, 'worker')}, ${counted(here.reduce((sum, { threads }) => sum + threads, 0), 'thread')}`,
     );
     this.table.setRows(all);
     setText(this.tableCount, counted(here.length, 'worker'));

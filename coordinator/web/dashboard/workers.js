@@ -1,5 +1,5 @@
 // All workers.
-import { counted, rateInWords, whole } from './format.js';
+import { counted, rateInWords } from './format.js';
 import { farm, onFarm, speed } from './farm_state.js';
 import { h, setText } from './dom.js';
 import { noWorkers } from './welcome.js';
@@ -49,7 +49,7 @@ export function workersView() {
       summary,
       all.length === 0
         ? ''
-        : `${counted(here.length, 'worker')}, ${whole(here.reduce((sum, { threads }) => sum + threads, 0))} threads, ${rateInWords(all.reduce((sum, worker) => sum + speed(worker), 0))}`,
+        : `${counted(here.length, 'worker')}, ${counted(here.reduce((sum, { threads }) => sum + threads, 0), 'thread')}, ${rateInWords(all.reduce((sum, worker) => sum + speed(worker), 0))}`,
     );
   };
   const leave = onFarm((what) => what.has('workers') && draw());
