@@ -7,6 +7,7 @@
 #include <cctype>
 #include <cstddef>
 #include <sstream>
+#include <utility>
 
 namespace hyades::cli {
 namespace {
@@ -96,6 +97,13 @@ std::string beside(const std::string& names, const std::string& text) {
 
 std::string HelpFormatter::make_option(const CLI::Option* option, bool is_positional) const {
   return beside(names_of(option, is_positional), described(option, is_positional));
+}
+
+/// With one empty line between two groups: the base has one before each and one behind it.
+std::string HelpFormatter::make_help(const CLI::App* app, std::string name,
+                                     CLI::AppFormatMode mode) const {
+  const std::string text = CLI::Formatter::make_help(app, std::move(name), mode);
+  return CLI::detail::find_and_replace(text, "\n\n\n", "\n\n");
 }
 
 std::string HelpFormatter::make_subcommand(const CLI::App* command) const {
