@@ -137,7 +137,9 @@ v1::Job JobQueries::describe(const ActiveJob& active) const {
   v1::Job job = active.describe(dispatcher_.scheduler().leased_units(active.id));
   // Until its end is stored, it has not ended for anybody.
   if (active.ending) job.set_state(v1::JOB_STATE_RUNNING);
-  if (job.reason().empty()) job.set_reason(disk_.reason());
+  // Of a full disk a job knows nothing, and no worker that comes helps.
+  const bool may_begin = job.reason().empty() || job.reason() == active.obstacle;
+  if (may_begin && !disk_.reason().empty()) job.set_reason(disk_.reason());
   count_cost(job);
   return job;
 }
