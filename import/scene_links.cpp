@@ -15,6 +15,8 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr std::string_view kUdim = "<UDIM>";
+/// Files that a pattern may mean: links within a folder may lead back into it, over and over.
+constexpr size_t kMostMeant = size_t{1} << 17;
 
 /// Whether `path` lies in `folder` or below it; both canonical.
 bool is_inside(const fs::path& path, const fs::path& folder) {
@@ -68,7 +70,12 @@ Status SceneLinks::check(const std::string& scene, const std::string& file) cons
   std::vector<fs::path> meant = {fs::path()};
   for (const fs::path& step : fs::path(file)) {
     std::vector<fs::path> longer;
-    for (const fs::path& way : meant) add_meant(fs::path(folder_), way, step.string(), longer);
+    for (const fs::path& way : meant) {
+      add_meant(fs::path(folder_), way, step.string(), longer);
+      if (longer.size() <= kMostMeant) continue;
+      return Error{file + ": may mean more than " + std::to_string(kMostMeant) +
+                   " files, expected fewer marks in the names of folders"};
+    }
     meant = std::move(longer);
   }
   for (const fs::path& each : meant) {

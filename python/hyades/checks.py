@@ -70,8 +70,9 @@ def several(count: int, one: Callable[[Key, Any], Any] = component) -> Callable[
         if not isinstance(value, Sequence) or isinstance(value, str) or len(value) != count:
             raise refuse(f"{count} numbers")
         # Large scenes have a matrix for each of their objects.
-        if key.low is None and key.high is None and set(map(type, value)) == {float} and all(map(math.isfinite, value)):
-            return list(value)
+        if one is not whole and key.low is None and key.high is None:
+            if set(map(type, value)) == {float} and all(map(math.isfinite, value)):
+                return list(value)
         return [one(key, item) for item in value]
 
     return check

@@ -135,6 +135,18 @@ TEST_F(Links, OfAnyFileOfAPatternAreRefused) {
   EXPECT_FALSE(links.check("scene/a.obj", "scene/plain#.png")) << "as it is written";
 }
 
+TEST_F(Links, OfAPatternThatLeadBackIntoTheFolderEnd) {
+  const SceneLinks links(folder_.path().string());
+  write("scene/a.png", "x");
+  link(".", "scene/one");
+  link(".", "scene/two");
+  std::string file = "scene/";
+  for (int i = 0; i < 40; ++i) file += "#/";
+  const Status meant = links.check("scene/a.obj", file + "a.png");
+  ASSERT_FALSE(meant);
+  EXPECT_THAT(meant.error().message, HasSubstr("may mean more than 131072 files"));
+}
+
 TEST_F(Links, ImportKeepsToTheSameRule) {
   link("../secrets", "scene/tex");
   WriteSceneJob request;
