@@ -122,13 +122,12 @@ TEST_F(UnreadPictures, WhatIsOnlyKeptGivesWay) {
 
 TEST_F(UnreadPictures, OfOneFrameAFewAreWantedAtATime) {
   start(false);
-  // Both threads are kept from what is asked for until all have asked.
+  // The thread that copies films is kept from it until all have asked.
   std::promise<void> go;
   const std::shared_future<void> gone(go.get_future());
-  const std::string known = job_;
-  job_ = "4711";
-  for (int i = 0; i < 2; ++i) ask("ada", 16, [gone](const WebReply&) { gone.wait(); });
-  job_ = known;
+  const grpc::Status held = world_.farm.controller->queries().film_alone(
+      std::stoull(job_), 1, [gone](const auto&...) { gone.wait(); });
+  ASSERT_TRUE(held.ok()) << held.error_message();
   std::mutex mutex;
   std::vector<unsigned> adas;
   std::vector<unsigned> bobs;
@@ -138,21 +137,24 @@ TEST_F(UnreadPictures, OfOneFrameAFewAreWantedAtATime) {
       whose.push_back(reply.status);
     };
   };
-  constexpr int kAsked = 50;
-  for (int i = 0; i < kAsked; ++i) ask("ada", 16 + i, note(adas));
+  const auto answered = [&](size_t of_ada, size_t of_bob) {
+    return eventually([&] {
+      const std::lock_guard lock(mutex);
+      return adas.size() == of_ada && bobs.size() == of_bob;
+    });
+  };
+  constexpr size_t kAsked = 50;
+  constexpr size_t kRefused = kAsked - PicturesApi::kMostOfFrameOfOne;
+  for (size_t i = 0; i < kAsked; ++i) ask("ada", 16 + static_cast<int>(i), note(adas));
+  const bool refused = answered(kRefused, 0);
   ask("bob", 16, note(bobs));
   ask("bob", 80, note(bobs));
   go.set_value();
-  ASSERT_TRUE(eventually([&] {
-    const std::lock_guard lock(mutex);
-    return adas.size() == kAsked && bobs.size() == 2;
-  }));
+  ASSERT_TRUE(refused);
+  EXPECT_EQ(adas, std::vector<unsigned>(kRefused, 503));
+  ASSERT_TRUE(answered(kAsked, 2));
   EXPECT_EQ(bobs, (std::vector<unsigned>{200, 200}));
-  const auto made = std::count(adas.begin(), adas.end(), 200U);
-  EXPECT_GE(made, 4);
-  // Those who ask while the first are being made begin anew.
-  EXPECT_LE(made, 2 * static_cast<int>(PicturesApi::kMostOfFrameOfOne));
-  EXPECT_EQ(std::count(adas.begin(), adas.end(), 503U), kAsked - made);
+  EXPECT_EQ(std::count(adas.begin(), adas.end(), 200U), PicturesApi::kMostOfFrameOfOne);
 }
 
 }  // namespace
