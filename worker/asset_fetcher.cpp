@@ -179,6 +179,11 @@ void AssetFetcher::release(uint64_t job) {
   }
 }
 
+bool AssetFetcher::has_files(uint64_t job) {
+  const core::MutexLock lock(mutex_);
+  return pinned_.contains(job);
+}
+
 /// Counts the files as in work; an error where they are more than may be open.
 AssetFetcher::Outcome AssetFetcher::keep(const Digests& files) {
   if (files.size() > most_pins_) {

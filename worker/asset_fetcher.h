@@ -60,6 +60,8 @@ class AssetFetcher {
   void recheck(const std::string& file) HYADES_EXCLUDES(mutex_);
   /// The job's files are no longer wanted: what is under way is broken off and not reported.
   void release(uint64_t job) HYADES_EXCLUDES(mutex_);
+  /// Whether all files of the job were fetched and not released since, whatever is reported late.
+  bool has_files(uint64_t job) HYADES_EXCLUDES(mutex_);
 
   /// Bytes of the store's files, as of the last time that a job's files were fetched.
   uint64_t cache_bytes() const { return cache_bytes_; }

@@ -45,8 +45,11 @@ class WorkerPorts {
   /// The child has found this file of the cache (by its name there) damaged: to be looked at before
   /// it is used again.
   virtual void recheck(const std::string& file) = 0;
-  /// No unit of the job is left: its files may be evicted. What was being fetched may go on.
+  /// No unit of the job is left: its files may be evicted. What was being fetched is broken off,
+  /// and answered only where the answer is on its way already.
   virtual void release(uint64_t job) = 0;
+  /// Whether all files of the job were fetched and not released since.
+  virtual bool has_files(uint64_t job) = 0;
   /// For people.
   virtual void note(farm::LogLevel level, const std::string& text,
                     const farm::LogFields& about) = 0;

@@ -18,6 +18,7 @@ void StateMachine::files_are_there(uint64_t id) {
     ports_.release(id);  // the job ended meanwhile
     return;
   }
+  if (!ports_.has_files(id)) return;  // they were let go of since; what is fetched now is to come
   job->second.fetching = false;
   job->second.has_files = true;
   job->second.rests.reset();
@@ -127,6 +128,7 @@ void StateMachine::forget_idle_job(uint64_t id) {
     if (item.leased.job() == id && item.state != Item::State::kept) return;
   }
   ports_.release(id);
+  job->second.fetching = false;  // nobody answers for it any more
   job->second.has_files = false;
   if (!job->second.over) return;
   if (job->second.told) {

@@ -98,6 +98,7 @@ class Worker : private WorkerPorts {
   void fetch(uint64_t job, const v1::JobSpec& spec) override { fetcher_.fetch(job, spec); }
   void recheck(const std::string& file) override { fetcher_.recheck(file); }
   void release(uint64_t job) override { fetcher_.release(job); }
+  bool has_files(uint64_t job) override { return fetcher_.has_files(job); }
   void note(farm::LogLevel level, const std::string& text, const farm::LogFields& about) override {
     log_.note(level, text, about);
   }

@@ -155,6 +155,10 @@ TEST(AssetFetcher, AReleasedJobIsBrokenOffAndNotReported) {
   fetcher.fetch(3, spec_of(kSmall));
   const std::vector<std::pair<uint64_t, std::string>> expected{{3, "there"}};
   EXPECT_EQ(reports.first(), expected);
+  EXPECT_FALSE(fetcher.has_files(1));
+  EXPECT_TRUE(fetcher.has_files(3));
+  fetcher.release(3);
+  EXPECT_FALSE(fetcher.has_files(3)) << "whoever hears the report only now";
 }
 
 /// Its size and its times are those of the good file: only its bytes tell.

@@ -222,5 +222,37 @@ TEST(StateMachine, FilesThatComeTooLateAreNotKept) {
   EXPECT_EQ(world.ports.released, std::vector<uint64_t>{WorkerWorld::kJob});
 }
 
+TEST(StateMachine, AJobThatWasGivenUpWhileItsFilesCameHasThemFetchedAgain) {
+  WorkerWorld world;
+  world.begin();
+  world.lease(WorkerWorld::unit(0));
+  world.now += seconds(11);  // out of contact for longer than a lease
+  world.machine->tick(world.now, true);
+  ASSERT_TRUE(world.machine->empty());
+  EXPECT_EQ(world.ports.released, std::vector<uint64_t>{WorkerWorld::kJob});
+  world.lease(WorkerWorld::unit(0, 2));
+  EXPECT_EQ(world.ports.fetched.size(), 2U) << "nobody answers for the first time";
+  world.machine->files_are_there(WorkerWorld::kJob);
+  EXPECT_NE(world.token_of(0), 0U);
+}
+
+/// The answer was on its way when the files were let go of: they may be evicted.
+TEST(StateMachine, FilesThatWereLetGoOfSinceTheyCameDoNotCount) {
+  WorkerWorld world;
+  world.begin();
+  world.lease(WorkerWorld::unit(0));
+  world.stop(WorkerWorld::unit(0));
+  world.lease(WorkerWorld::unit(8, 2));
+  world.ports.files_are_kept = false;
+  world.machine->files_are_there(WorkerWorld::kJob);
+  EXPECT_EQ(world.token_of(8), 0U);
+  world.lease(WorkerWorld::unit(16, 3));
+  EXPECT_EQ(world.ports.fetched.size(), 2U) << "the second time is still to be answered";
+  world.ports.files_are_kept = true;
+  world.machine->files_are_there(WorkerWorld::kJob);
+  EXPECT_NE(world.token_of(8), 0U);
+  EXPECT_NE(world.token_of(16), 0U);
+}
+
 }  // namespace
 }  // namespace hyades::worker

@@ -284,9 +284,7 @@ TEST(StateMachine, StoppedUnitsAreDroppedAndMakeRoom) {
   world.lease(WorkerWorld::unit(0));
   world.machine->files_are_there(WorkerWorld::kJob);
   world.take_sent();
-  v1::CoordinatorMessage message;
-  *message.mutable_stop()->mutable_unit() = WorkerWorld::unit(0);
-  world.machine->coordinator_says(message, world.now);
+  world.stop(WorkerWorld::unit(0));
   EXPECT_TRUE(world.stopped(world.token_of(0)));
   EXPECT_EQ(first(world.take_sent(), &Message::has_request).request().units(), 1U);
 }

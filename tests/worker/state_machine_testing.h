@@ -20,6 +20,7 @@ class FakePorts : public WorkerPorts {
   void fetch(uint64_t job, const v1::JobSpec& /*spec*/) override { fetched.push_back(job); }
   void recheck(const std::string& file) override { rechecked.push_back(file); }
   void release(uint64_t job) override { released.push_back(job); }
+  bool has_files(uint64_t /*job*/) override { return files_are_kept; }
   void note(farm::LogLevel level, const std::string& text, const farm::LogFields& about) override {
     if (level == farm::LogLevel::debug) return;
     notes.push_back(text);
@@ -32,6 +33,7 @@ class FakePorts : public WorkerPorts {
   std::vector<std::string> kills;
   std::vector<uint64_t> fetched;
   std::vector<uint64_t> released;
+  bool files_are_kept = true;  ///< those of every job
   std::vector<std::string> rechecked;
   std::vector<std::string> notes;      ///< but for those of level debug
   std::vector<farm::LogFields> noted;  ///< what they were about
@@ -108,6 +110,12 @@ class WorkerWorld {
   void acknowledge(const v1::LeasedUnit& leased) {
     v1::CoordinatorMessage message;
     *message.mutable_acknowledge()->mutable_unit() = leased;
+    machine->coordinator_says(message, now);
+  }
+
+  void stop(const v1::LeasedUnit& leased) {
+    v1::CoordinatorMessage message;
+    *message.mutable_stop()->mutable_unit() = leased;
     machine->coordinator_says(message, now);
   }
 
