@@ -10,8 +10,10 @@ import hyades
 import numpy
 from addon import AddOnTest
 from hyades import Keys, MeshData, Step, cameras, lights, objects
+from hyades.farm.states import JobState, read_state
 
-from hyades_render import animation, joined_frames, moving_transform, scene_job, view_camera
+from hyades_render import animation, farm_state, joined_frames, moving_transform, scene_job, view_camera
+from hyades_render.farm_watch import Seen
 from hyades_render.viewer import Viewer
 
 
@@ -244,6 +246,16 @@ class Scenes(AddOnTest):
         cube.keyframe_insert("location", frame=250)
         self.assertEqual(animation.moving_frames(self.scene), range(1, 251))
 
+    def test_the_panel_takes_whatever_a_job_may_say(self) -> None:
+        """A timer brings it, which an exception would end."""
+        for whole, number in (((1 << 64) - 1, float("inf")), (1 - (1 << 64), float("-inf")), (0, float("nan"))):
+            row = {"id": 7, "name": "a", "state": "b", "samples": 1, "samples_done": whole, "noise": number}
+            row |= {"frames": whole, "frames_done": whole, "frames_failed": whole, "seconds_left": number}
+            for said in (row, {**row, "noise": whole, "seconds_left": whole}):
+                farm_state._take_jobs(Seen((read_state(JobState, said),)))
+                self.assertEqual([job.job_id for job in bpy.context.window_manager.hyades_jobs], ["7"])
+        farm_state._take_jobs(Seen())
+
     def test_names_are_those_that_jobs_take(self) -> None:
         for text, name in (("Küche 1", "K_che 1"), ("  ", "blender"), ("-a/b", "a_b"), ("x" * 200, "x" * 100)):
             self.assertEqual(scene_job.job_name(text), name)
@@ -269,6 +281,126 @@ class Scenes(AddOnTest):
         x = ray @ right / (depth * tangent * aspect) - 2 * camera.shift[0]
         y = ray @ up / (depth * tangent) - 2 * camera.shift[1]
         numpy.testing.assert_allclose([x, y], [clip.x / clip.w, clip.y / clip.w], atol=1e-5)
+
+
+class NamedFiles(AddOnTest):
+    """Which files a .blend may have sent to a farm: it names what it likes."""
+
+    def setUp(self) -> None:
+        super().setUp()
+        self.key = self.folder / "home/id_rsa"
+        self.wood = self.folder / "textures/wood.png"
+        for path in (self.key, self.wood):
+            path.parent.mkdir()
+        self.key.write_bytes(b"-----BEGIN OPENSSH PRIVATE KEY-----\n")
+        self.picture(self.wood)
+        made = bpy.data.materials["Material"]
+        made.use_nodes = True
+        self.tree = made.node_tree
+        self.texture = self.tree.nodes.new("ShaderNodeTexImage")
+        self.tree.links.new(self.texture.outputs["Color"], self.tree.nodes["Principled BSDF"].inputs["Base Color"])
+
+    def picture(self, path) -> None:
+        made = bpy.data.images.new("made", 4, 4)
+        made.filepath_raw, made.file_format = str(path), "PNG"
+        made.save()
+        bpy.data.images.remove(made)
+
+    def link(self, name: str, target):
+        path = self.folder / "scene" / name
+        path.parent.mkdir(exist_ok=True)
+        path.symlink_to(target)
+        return path
+
+    def image(self, path, source: str = "FILE"):
+        image = bpy.data.images.new("named", 4, 4)
+        image.source, image.filepath = source, str(path)
+        self.assertEqual((image.source, image.filepath), (source, str(path)))
+        return image
+
+    def exported(self):
+        """The job, and complaints as text. In all that is written there is no key."""
+        exported = animation.job_of(self.scene, frames=None, name="named")
+        exported.job.write(self.folder / "job/job.yaml")
+        self.assertNotRegex((self.folder / "job/job.yaml").read_text(), "id_rsa|stolen")
+        self.assertFalse([p for p in self.folder.glob("job/assets/*") if b"OPENSSH" in p.read_bytes()])
+        return exported.job, "\n".join(map(str, exported.complaints))
+
+    def color(self, path, source: str = "FILE"):
+        """What the material's colour has become, and complaints."""
+        self.texture.image = self.image(path, source)
+        job, complaints = self.exported()
+        return job.objects["Cube"].material.base_color, complaints
+
+    def test_pictures_are_taken_wherever_they_lie(self) -> None:
+        shelf = self.link("shelf", self.wood.parent)
+        self.picture(self.wood.with_name("wood.1002.png"))
+        self.link("tile.1011.png", self.wood)
+        for path, source in (
+            (self.wood, "FILE"),
+            (shelf / "wood.png", "FILE"),
+            (self.link("other.png", self.wood), "FILE"),
+            (self.wood.with_name("wood.<UDIM>.png"), "TILED"),
+            (self.folder / "scene/tile.<UDIM>.png", "TILED"),
+        ):
+            color, complaints = self.color(path, source)
+            self.assertEqual((str(color.file), complaints), (str(path), ""))
+
+    def test_links_to_other_files_are_not(self) -> None:
+        color, complaints = self.color(self.link("stolen.png", self.key))
+        self.assertIsInstance(color, (list, tuple))  # the default
+        self.assertRegex(complaints, "Image Texture.*Blender reads no picture from the file .*stolen.png")
+
+    def test_what_ends_otherwise_goes_as_what_blender_sees(self) -> None:
+        """Of links into a store by content, too; and where the name is a pattern, of the file that is called so."""
+        store = self.wood.with_name("2cf24dba")
+        self.wood.rename(store)
+        pattern = self.folder / "scene/a<UDIM>.png"
+        for path in (self.link("wood.png", store), store, pattern):
+            if path == pattern:
+                self.picture(path)
+                self.link("a1001.png", self.key)
+            color, complaints = self.color(path)
+            self.assertEqual((color.file.shape, complaints), ((4, 4, 4), ""))
+
+    def test_tiles_are_pictures_with_a_mark_in_their_names(self) -> None:
+        self.picture(self.folder / "scene-1001.png")
+        self.link("stolen.1001.png", self.wood)
+        self.link("stolen.1100.png", self.key)
+        self.link("stolen.1001", self.key)
+        for name in ("home/id_rsa", "textures/wood.png", "scene/stolen.<UDIM>.png", "scene/stolen.<UDIM>", "no.<UDIM>.png"):
+            color, complaints = self.color(self.folder / name, "TILED")
+            self.assertIsInstance(color, (list, tuple), name)
+            self.assertRegex(complaints, f"Image Texture.*the tiles .*{name} are not taken: ")
+
+    def test_the_world_takes_no_others_either(self) -> None:
+        world = self.scene.world
+        world.use_nodes = True
+        texture = world.node_tree.nodes.new("ShaderNodeTexEnvironment")
+        world.node_tree.links.new(texture.outputs["Color"], world.node_tree.nodes["Background"].inputs["Color"])
+        texture.image = self.image(self.link("stolen.png", self.key))
+        self.assertRegex(self.exported()[1], "Blender reads no picture from the file .*stolen.png; the world is black")
+        texture.image = self.image(self.wood)
+        self.assertEqual(str(self.exported()[0].environment.image), str(self.wood))
+
+    def test_volumes_are_taken_where_links_lead_to_volumes(self) -> None:
+        smoke = self.folder / "smoke.vdb"
+        smoke.write_bytes(b"not looked at here")
+        data = bpy.data.volumes.new("Smoke")
+        self.scene.collection.objects.link(bpy.data.objects.new("Smoke", data))
+        fog = bpy.data.materials.new("Fog")
+        fog.use_nodes = True
+        shader = fog.node_tree.nodes.new("ShaderNodeVolumePrincipled")
+        fog.node_tree.links.new(shader.outputs[0], fog.node_tree.nodes["Material Output"].inputs["Volume"])
+        data.materials.append(fog)
+        for path in (smoke, self.link("link.vdb", smoke)):
+            data.filepath = str(path)
+            self.assertEqual(str(self.exported()[0].objects["Smoke"].interior.density.vdb), str(path))
+        for path in (self.link("stolen.vdb", self.key), self.key):
+            data.filepath = str(path)
+            job, complaints = self.exported()
+            self.assertNotIn("Smoke", job.objects)
+            self.assertRegex(complaints, f"object 'Smoke': there is no file .*{path.name}")
 
 
 if __name__ == "__main__":

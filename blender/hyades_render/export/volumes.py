@@ -11,10 +11,12 @@ from hyades import materials, media, objects
 
 from . import axes
 from .context import Context, free_name
+from .files import may_be_sent
 from .nodes import graph, values
 from .nodes.graph import Output
 from .nodes.translator import Translator
 
+_ENDS = {".vdb", ".nvdb"}
 _FACES = [[0, 3, 2, 1], [4, 5, 6, 7], [0, 1, 5, 4], [1, 2, 6, 5], [2, 3, 7, 6], [3, 0, 4, 7]]
 
 
@@ -23,7 +25,7 @@ def add_volume(context: Context, object: Any, matrix: Any) -> None:
     data, where = object.data, f"object '{object.name}'"
     path = _file(context, data)
     if path is None:
-        context.complain(where, f"there is no file {data.filepath or '(none)'}, expected .vdb or .nvdb")
+        context.complain(where, f"there is no file {data.filepath or '(none)'}, expected .vdb or .nvdb, or a link to one")
         return
     slot = object.material_slots[0].material if len(object.material_slots) else None
     medium = _medium(context, slot, path)
@@ -40,8 +42,8 @@ def _file(context: Context, data: Any) -> Optional[str]:
     import bpy
 
     path = data.grids.frame_filepath if data.is_sequence else bpy.path.abspath(data.filepath, library=data.library)
-    is_one = path and path.endswith((".vdb", ".nvdb")) and os.path.isfile(path)  # nobody's other files go to a farm
-    return os.path.abspath(path) if is_one else None
+    path = os.path.abspath(path) if path else ""
+    return path if may_be_sent(path, _ENDS) else None
 
 
 def _medium(context: Context, material: Any, path: str) -> Optional[media.Medium]:

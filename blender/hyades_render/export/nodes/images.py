@@ -7,11 +7,14 @@ from typing import Any, NamedTuple
 
 import numpy
 
+from ..files import may_be_sent
 from .evaluate.images import pixels_of
 from .graph import Output
 from .translator import Inexpressible, Translator
 
 _READ = {".png", ".jpg", ".jpeg", ".tif", ".tiff", ".exr", ".hdr", ".tga", ".bmp", ".qoi", ".ppm", ".pgm", ".pfm"}
+_MARK = "<UDIM>"
+_TILES = range(1001, 1101)  # that a job has
 _LINEAR = {"Linear", "Linear Rec.709", "Non-Color", "Raw", "Generic Data"}
 
 
@@ -35,27 +38,43 @@ class ImageFile(NamedTuple):
 
 
 def image_file(translator: Translator, node: Any, output: Output) -> ImageFile:
-    """The picture of a node. Inexpressible: it is a film, or its file is missing."""
+    """The picture of a node. Inexpressible: it is a film, or its file is missing or no picture."""
     image = node.image
     space = "linear" if image.colorspace_settings.name in _LINEAR else "srgb"
     if image.colorspace_settings.name not in _LINEAR | {"sRGB"}:
         translator.complain(node, f"the colour space {image.colorspace_settings.name} is read as sRGB")
     path = os.path.abspath(_path(image))
-    end = os.path.splitext(path)[1].lower()
     if image.source == "TILED":
+        _check_tiles(translator, output, path)
         return ImageFile(path, space, True)
     if image.source not in ("FILE", "GENERATED"):
         raise Inexpressible(output, f"images of source {image.source.lower()} are not supported")
     if image.is_dirty or image.source == "GENERATED":
-        return ImageFile(_array(translator, image), "linear", False)
+        return ImageFile(_array(translator, output), "linear", False)
     if image.packed_file is not None:
+        end = os.path.splitext(path)[1].lower()
         end = end if end in _READ else _end_of(image.packed_file.data)
         return ImageFile(PackedFile(bytes(image.packed_file.data), end), space, False)
-    if not os.path.exists(path):
-        raise Inexpressible(output, f"the file {image.filepath} is not there")
-    if end not in _READ:
-        return ImageFile(_array(translator, image), "linear", False)
+    # Of all other files goes what Blender sees in them; the mark would name files that nobody has looked at.
+    if _MARK in path or not may_be_sent(path, _READ):
+        return ImageFile(_array(translator, output), "linear", False)
     return ImageFile(path, space, False)
+
+
+def _check_tiles(translator: Translator, output: Output, path: str) -> None:
+    """Looks at all files that a pattern stands for. Inexpressible, with a complaint: they may not go to a farm."""
+    folder, name = os.path.split(path)
+    tiles = [tile for number in _TILES if os.path.exists(tile := path.replace(_MARK, str(number)))]
+    if _MARK in folder or name.count(_MARK) != 1 or not tiles:
+        why = f"expected {_MARK} once in the name, and a file for a tile"
+    elif not all(may_be_sent(tile, _READ) for tile in tiles):
+        why = "not all of them are pictures, or links to pictures"
+    else:
+        return
+    # Told here, as tiles are not computed either, which is all that would be told of them.
+    why = f"the tiles {output.node.image.filepath} are not taken: {why}"
+    translator.complain(output.node, why)
+    raise Inexpressible(output, why)
 
 
 def _path(image: Any) -> str:
@@ -64,9 +83,10 @@ def _path(image: Any) -> str:
     return bpy.path.abspath(image.filepath, library=image.library)
 
 
-def _array(translator: Translator, image: Any) -> numpy.ndarray:
+def _array(translator: Translator, output: Output) -> numpy.ndarray:
     """Light (h, w, 4), row 0 at the top."""
-    return pixels_of(image, translator.context)[::-1].astype("float16" if not image.is_float else "float32")
+    is_float = output.node.image.is_float
+    return pixels_of(output, translator.context)[::-1].astype("float32" if is_float else "float16")
 
 
 def _end_of(data: bytes) -> str:

@@ -13,11 +13,15 @@ from .evaluator import Evaluator, computes
 Array = Any
 
 
-def pixels_of(image: Any, context: Any) -> Array:
-    """Linear light (h, w, 4), row 0 at the bottom, straight alpha. Kept for the export."""
+def pixels_of(output: Output, context: Any) -> Array:
+    """Linear light (h, w, 4) of a node's image, row 0 at the bottom, straight alpha. Kept for the export.
+    Inexpressible: its file is missing, or no picture."""
+    image = output.node.image
     key = ("pixels", image.name_full)
     if key not in context.materials:
         width, height = image.size
+        if not width * height:
+            raise Inexpressible(output, f"Blender reads no picture from the file {image.filepath}")
         flat = numpy.empty(width * height * image.channels, "float32")
         image.pixels.foreach_get(flat)
         found = flat.reshape(height, width, image.channels).astype("float64")
@@ -64,12 +68,12 @@ def image_texture(at: Evaluator, output: Output) -> Array:
     node = output.node
     if node.image is None:
         raise Inexpressible(output, "there is no image")
-    if node.image.source not in ("FILE", "GENERATED") or not node.image.has_data and not node.image.size[0]:
+    if node.image.source not in ("FILE", "GENERATED"):
         raise Inexpressible(output, f"images of source {node.image.source.lower()} cannot be computed")
     place = numpy.atleast_2d(at.place(output, uv=True))
     if node.projection != "FLAT":
         raise Inexpressible(output, f"the projection {node.projection.lower()} is not supported here")
-    found = looked_up(pixels_of(node.image, at.translator.context), place[:, 0], place[:, 1], node.extension,
+    found = looked_up(pixels_of(output, at.translator.context), place[:, 0], place[:, 1], node.extension,
                       node.interpolation)
     return found[:, 3] if output.socket.identifier == "Alpha" else found[:, :3]
 
@@ -85,5 +89,5 @@ def environment_texture(at: Evaluator, output: Output) -> Array:
     direction = direction / numpy.maximum(numpy.linalg.norm(direction, axis=1, keepdims=True), 1e-20)
     u = -numpy.arctan2(direction[:, 1], direction[:, 0]) / (2 * numpy.pi) + 0.5
     v = numpy.arcsin(numpy.clip(direction[:, 2], -1, 1)) / numpy.pi + 0.5
-    pixels = pixels_of(node.image, at.translator.context)
+    pixels = pixels_of(output, at.translator.context)
     return looked_up(pixels, u, v, "REPEAT", node.interpolation)[:, :3]
