@@ -17,6 +17,7 @@ from hyades.exr import decode_exr
 from hyades.exr_header import Header
 from hyades.farm import upload
 from hyades.farm.events import parse_events
+from hyades.farm.states import JobState, read_state
 
 CONTENT = b"a picture" * 1000
 
@@ -185,6 +186,15 @@ class Bounds(unittest.TestCase):
                      b'{"jobs": [{"id": "x"}], "next_before": 0}'):  # fmt: skip
             with self.subTest(body[:40]):
                 self.refused((200, {}, body), lambda farm: list(farm.jobs()), "unknown", "answer")
+
+    def test_whole_numbers_are_those_that_others_can_take(self) -> None:
+        """A share of numbers of 400 digits is no float."""
+        row = {"id": 1, "name": "a", "state": "running", "samples": 1, "samples_done": (1 << 64) - 1}
+        for name, number in (("samples_done", 10**400), ("samples", -(10**400)), ("seconds_left", 10**400), ("noise", -(10**30))):
+            with self.subTest(name):
+                answer = ok({"jobs": [{**row, name: number}], "next_before": 0})
+                self.refused(answer, lambda farm: [job.share for job in farm.jobs()], "unknown", f"has no JobState.*{name}")
+        self.assertEqual(read_state(JobState, row).share, 2.0**64)
 
     def test_lists_that_do_not_go_on_end(self) -> None:
         self.refused(ok({"jobs": [], "next_before": 7}), lambda farm: list(farm.jobs()), "unknown", "does not go on")

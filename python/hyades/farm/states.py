@@ -17,6 +17,8 @@ ENDED = ("done", "failed", "cancelled")
 
 _PLAIN: dict[str, tuple[type, ...]] = {"int": (int,), "float": (int, float), "bool": (bool,), "str": (str,)}
 
+_WHOLE_END = 1 << 64  # coordinators count with 64 bits; of numbers without end nobody can make a float
+
 
 def read_state(kind: type[_State], row: Any) -> _State:
     """A row of an answer as one of the classes below; FarmError where it is none."""
@@ -39,6 +41,8 @@ def _is(hint: str, value: Any) -> bool:
         return hint.startswith("tuple") and all(isinstance(item, inner) for item in value)
     if value is None:
         return hint.endswith("| None")
+    if isinstance(value, int) and abs(value) >= _WHOLE_END:
+        return False
     return isinstance(value, _PLAIN.get(hint.removesuffix(" | None"), ()))
 
 
