@@ -91,19 +91,16 @@ class Loader {
  private:
   /// Everything that the value of one `include:` brings, in order.
   YamlPtr included_by(const YamlNode& value, const std::string& from) {
-    auto all = std::make_shared<YamlNode>();
-    all->kind = YamlNode::Kind::map;
-    YamlPtr merged = all;
+    JoinedFiles all(empty_map());
     const auto add = [&](const YamlNode& name) {
-      if (YamlPtr file = load_named(name, from))
-        merged = join_files(*merged, *file, false, diagnostics_);
+      if (const YamlPtr file = load_named(name, from)) all.add(*file, false, diagnostics_);
     };
     if (value.kind == YamlNode::Kind::list) {
       for (const YamlPtr& name : value.list) add(*name);
     } else {
       add(value);
     }
-    return merged;
+    return all.map();
   }
 
   struct Opened {
@@ -140,6 +137,12 @@ class Loader {
                                        " deep and " + std::to_string(kMaxFiles) + " in all");
       return std::nullopt;
     }
+    // Before it is opened: what a script makes is made then, and kept.
+    if (bytes_ > kMaxBytes || values_ > kMaxValues) {
+      complain_too_much(name.where);
+      return std::nullopt;
+    }
+    seen_.insert(reference);
     const auto scene = document_of(reference);
     const std::string named = scene ? scene->scene : reference;
     std::string script = tree.origins.script_at(name.where);
@@ -157,13 +160,8 @@ class Loader {
       return std::nullopt;
     }
     if (bytes->size() + bytes_ > kMaxBytes) {
-      diagnostics_.add(name.where, "the included files have more than " +
-                                       std::to_string(kMaxBytes >> 20) + " MiB in all");
-      return std::nullopt;
-    }
-    if (values_ > kMaxValues) {
-      diagnostics_.add(name.where, "the included files have more than " +
-                                       std::to_string(kMaxValues) + " values in all");
+      bytes_ += bytes->size();
+      complain_too_much(name.where);
       return std::nullopt;
     }
     // Complaints about what importers make are complaints about the scene.
@@ -171,6 +169,13 @@ class Loader {
     tree.includes.push_back(reference);
     tree.origins.included[shown] = reference;
     return Opened{reference, shown, std::move(script), std::move(*bytes)};
+  }
+
+  void complain_too_much(const YamlPlace& where) {
+    diagnostics_.add(where, bytes_ > kMaxBytes ? "the included files have more than " +
+                                                     std::to_string(kMaxBytes >> 20) + " MiB in all"
+                                               : "the included files have more than " +
+                                                     std::to_string(kMaxValues) + " values in all");
   }
 
   static const YamlNode* frames_key(const YamlNode& root, const char* key) {
@@ -243,18 +248,22 @@ class Loader {
     if (media == nullptr || media->value->kind != YamlNode::Kind::map) return own;
     const YamlEntry* files = media->value->find("file");
     if (files == nullptr || files->value->kind == YamlNode::Kind::map) return own;
-    auto others = std::make_shared<YamlNode>(*media->value);
-    std::erase_if(others->map, [](const YamlEntry& entry) { return entry.key == "file"; });
-    YamlPtr all = others;
+    YamlNode others = *media->value;
+    std::erase_if(others.map, [](const YamlEntry& entry) { return entry.key == "file"; });
+    JoinedSection all(others);
     const auto add = [&](const YamlNode& name) {
+      if (is_scene_file(name.scalar) || document_of(name.scalar)) {
+        diagnostics_.add(name.where, "file of media is " + describe(name) +
+                                         ", expected a file of media (.json, .yaml)");
+        return;
+      }
       const auto file = open_named(name, reference, "file of media");
       if (!file) return;
-      seen_.insert(file->reference);
       bytes_ += file->bytes.size();
       if (!file->script.empty()) tree.origins.scripts[file->shown] = file->script;
       const YamlPtr section =
           read_media_file({file->bytes.chars(), file->bytes.size()}, file->shown, diagnostics_);
-      if (section != nullptr) all = join_section(*all, *section, false, diagnostics_);
+      if (section != nullptr) all.add(*section, false, diagnostics_);
     };
     if (files->value->kind == YamlNode::Kind::list) {
       for (const YamlPtr& name : files->value->list) add(*name);
@@ -263,7 +272,7 @@ class Loader {
     }
     auto result = std::make_shared<YamlNode>(*own);
     for (YamlEntry& entry : result->map) {
-      if (entry.key == "media") entry.value = all;
+      if (entry.key == "media") entry.value = all.map();
     }
     return result;
   }

@@ -2,11 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cstddef>
-#include <memory>
-#include <string>
-
-#include "core/job/key_index.h"
 
 namespace hyades::core {
 
@@ -37,44 +32,56 @@ void complain_twice(const YamlEntry& first, const YamlEntry& second, Diagnostics
 
 bool is_named_section(std::string_view key) { return contains(kNamed, key); }
 
-YamlPtr join_section(const YamlNode& upper, const YamlNode& lower, bool overrides,
-                     Diagnostics& diagnostics) {
-  auto result = std::make_shared<YamlNode>(upper);
-  const KeyIndex index(upper);
-  for (const YamlEntry& entry : lower.map) {
-    const size_t own = index.find(entry.key);
-    if (own == KeyIndex::kNone) {
-      result->map.push_back(entry);
-    } else if (!overrides) {
-      complain_twice(upper.map[own], entry, diagnostics);
-    }
-  }
-  return result;
+JoinedSection::JoinedSection(const YamlNode& upper) : map_(std::make_shared<YamlNode>(upper)) {
+  for (size_t i = 0; i < map_->map.size(); ++i) places_[map_->map[i].key] = i;
 }
 
-YamlPtr join_files(const YamlNode& upper, const YamlNode& lower, bool overrides,
-                   Diagnostics& diagnostics) {
-  auto result = std::make_shared<YamlNode>(upper);
-  const KeyIndex index(upper);
+YamlEntry* JoinedSection::find(const std::string& key) {
+  const auto found = places_.find(key);
+  return found == places_.end() ? nullptr : &map_->map[found->second];
+}
+
+void JoinedSection::add(const YamlEntry& entry) {
+  places_[entry.key] = map_->map.size();
+  map_->map.push_back(entry);
+}
+
+void JoinedSection::add(const YamlNode& lower, bool overrides, Diagnostics& diagnostics) {
+  for (const YamlEntry& entry : lower.map) {
+    if (const YamlEntry* own = find(entry.key); own == nullptr) {
+      add(entry);
+    } else if (!overrides) {
+      complain_twice(*own, entry, diagnostics);
+    }
+  }
+}
+
+void JoinedFiles::add(const YamlNode& lower, bool overrides, Diagnostics& diagnostics) {
   for (const YamlEntry& entry : lower.map) {
     if (entry.key == "include") continue;
-    const size_t place = index.find(entry.key);
-    if (place == KeyIndex::kNone) {
-      result->map.push_back(entry);
+    YamlEntry* const own = files_.find(entry.key);
+    if (own == nullptr) {
+      files_.add(entry);
       continue;
     }
-    YamlEntry* const own = &result->map[place];
+    const bool named = is_named_section(entry.key);
     const bool maps =
         own->value->kind == YamlNode::Kind::map && entry.value->kind == YamlNode::Kind::map;
-    if (maps && is_named_section(entry.key)) {
-      own->value = join_section(*own->value, *entry.value, false, diagnostics);
-    } else if (maps && contains(kSections, entry.key)) {
-      own->value = join_section(*own->value, *entry.value, overrides, diagnostics);
+    if (maps && (named || contains(kSections, entry.key))) {
+      JoinedSection& section = sections_.try_emplace(entry.key, *own->value).first->second;
+      section.add(*entry.value, overrides && !named, diagnostics);
+      own->value = section.map();
     } else if (!overrides && entry.key != "hyades") {
       complain_twice(*own, entry, diagnostics);
     }
   }
-  return result;
+}
+
+YamlPtr join_files(const YamlNode& upper, const YamlNode& lower, bool overrides,
+                   Diagnostics& diagnostics) {
+  JoinedFiles joined(upper);
+  joined.add(lower, overrides, diagnostics);
+  return joined.map();
 }
 
 }  // namespace hyades::core

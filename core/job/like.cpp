@@ -5,7 +5,6 @@
 #include <cstdint>
 #include <memory>
 #include <string>
-#include <unordered_map>
 #include <utility>
 
 #include "core/base/text.h"
@@ -58,8 +57,8 @@ namespace {
 
 class LikeResolver {
  public:
-  LikeResolver(ReadContext& context, const YamlNode& named) : context_(context), named_(named) {
-    for (size_t i = 0; i < named.map.size(); ++i) index_[named.map[i].key] = i;
+  LikeResolver(ReadContext& context, const YamlNode& named)
+      : context_(context), named_(named), index_(named) {
     state_.resize(named.map.size(), State::untouched);
     values_.resize(named.map.size());
   }
@@ -91,7 +90,7 @@ class LikeResolver {
 
  private:
   enum class State : uint8_t { untouched, open, done };
-  static constexpr size_t kNone = static_cast<size_t>(-1);
+  static constexpr size_t kNone = KeyIndex::kNone;
 
   const YamlEntry* like_of(size_t i) const {
     const YamlNode& own = *named_.map[i].value;
@@ -99,8 +98,8 @@ class LikeResolver {
   }
 
   size_t target_of(size_t i, const YamlEntry& like) {
-    const auto found = index_.find(like.value->scalar);
-    if (like.value->kind == YamlNode::Kind::scalar && found != index_.end()) return found->second;
+    const size_t found = index_.find(like.value->scalar);
+    if (like.value->kind == YamlNode::Kind::scalar && found != kNone) return found;
     if (context_.diagnostics.full()) return kNone;
     std::vector<std::string> names;
     for (const YamlEntry& entry : named_.map) {
@@ -117,10 +116,10 @@ class LikeResolver {
     state_[i] = State::done;
     const YamlEntry* like = like_of(i);
     if (like == nullptr) return;
-    const auto found = index_.find(like->value->scalar);
-    const bool usable = found != index_.end() && state_[found->second] == State::done &&
-                        found->second != i && values_[found->second]->kind == YamlNode::Kind::map;
-    const YamlNode& other = usable ? *values_[found->second] : empty_map();
+    const size_t found = index_.find(like->value->scalar);
+    const bool usable = found != kNone && state_[found] == State::done && found != i &&
+                        values_[found]->kind == YamlNode::Kind::map;
+    const YamlNode& other = usable ? *values_[found] : empty_map();
     if (context_.spend(other.map.size(), like->value->where)) {
       values_[i] = merged(*named_.map[i].value, other);
     }
@@ -128,7 +127,7 @@ class LikeResolver {
 
   ReadContext& context_;
   const YamlNode& named_;
-  std::unordered_map<std::string, size_t> index_;
+  KeyIndex index_;
   std::vector<State> state_;
   std::vector<YamlPtr> values_;
 };

@@ -75,7 +75,7 @@ class Expander {
 
   /// `root` with what the scenes bring.
   YamlPtr joined(const YamlNode& root) const {
-    return join_files(root, brought_, false, diagnostics_);
+    return join_files(root, *brought_.map(), false, diagnostics_);
   }
 
  private:
@@ -211,12 +211,7 @@ class Expander {
       for (YamlEntry& light : moved->map) light.value = moved_light(light.value, *moves);
       value = moved;
     }
-    for (YamlEntry& own : brought_.map) {
-      if (own.key != section) continue;
-      own.value = join_section(*own.value, *value, false, diagnostics_);
-      return;
-    }
-    brought_.map.push_back({section, entry->key_where, value});
+    brought_.add(*map_of({section, entry->key_where, value}, value->where), false, diagnostics_);
   }
 
   /// The light with the steps of the objects around it after its own.
@@ -264,7 +259,7 @@ class Expander {
   float fps_;
   Diagnostics& diagnostics_;
   bool changed_ = false;
-  YamlNode brought_ = empty_map();
+  JoinedFiles brought_{empty_map()};
 };
 
 }  // namespace

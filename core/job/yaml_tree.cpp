@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <map>
 #include <sstream>
-#include <unordered_map>
 #include <utility>
 
 #include "core/job/made_lines.h"
@@ -90,7 +89,7 @@ class TreeBuilder : public YAML::EventHandler {
     bool drop_value = false;   ///< map: the value belongs to a duplicate key
     std::string key;
     YamlPlace key_where;
-    std::unordered_map<std::string, int> keys;  ///< and the lines they stand on
+    std::map<std::string, int> keys;  ///< and the lines they stand on; see KeyIndex
   };
 
   YamlPlace at(const YAML::Mark& mark) const { return lines_.at(mark.line + 1, mark.column + 1); }

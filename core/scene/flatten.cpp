@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <map>
 #include <memory>
 #include <set>
 #include <string_view>
@@ -234,8 +235,8 @@ class Flattener {
   Appearance looks_;  ///< when the shutter opens
   Displacements displacements_;
   MeshExtras extras_;
-  std::unordered_map<std::string_view, const GroupDesc*> groups_;
-  std::unordered_map<std::string_view, const PrincipledDesc*> shining_;  ///< materials that do
+  std::map<std::string_view, const GroupDesc*> groups_;
+  std::map<std::string_view, const PrincipledDesc*> shining_;  ///< materials that do
   /// Of objects with overrides in the chain: the materials for which they were asked.
   std::unordered_map<const ObjectDesc*, std::set<std::string>> overridden_;
   std::vector<const ObjectDesc*> chain_;  ///< from the outermost group to the object in hand

@@ -5,7 +5,6 @@
 #include <map>
 #include <optional>
 #include <string>
-#include <unordered_map>
 #include <vector>
 
 #include "core/job/yaml_build.h"
@@ -20,9 +19,9 @@ namespace hyades::core::pbrt {
 /// A scene with the files that must be read to say it.
 struct LoadedScene {
   Scene scene;
-  std::unordered_map<std::string, Spectrum> spectra;     ///< of .spd files, by their names
-  std::unordered_map<std::string, Bytes> files;          ///< what made files are made from
-  std::unordered_map<std::string, std::string> missing;  ///< why a file is not in `files`
+  std::map<std::string, Spectrum> spectra;     ///< of .spd files, by their names
+  std::map<std::string, Bytes> files;          ///< what made files are made from
+  std::map<std::string, std::string> missing;  ///< why a file is not in `files`
 };
 
 /// What is shared while a scene is put into the job language.

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstddef>
+#include <map>
 #include <string>
 #include <string_view>
 #include <unordered_map>
@@ -109,9 +110,9 @@ class Directives {
   bool in_world_ = false;
   int object_ = -1;    ///< index of the object that is being defined
   size_t copies_ = 0;  ///< of all objects
-  std::unordered_map<std::string, Motion> coordinate_systems_;
-  std::unordered_map<std::string, size_t> objects_;
-  std::unordered_map<std::string, Place> float_textures_, spectrum_textures_, materials_, media_;
+  std::map<std::string, Motion> coordinate_systems_;
+  std::map<std::string, size_t> objects_;
+  std::map<std::string, Place> float_textures_, spectrum_textures_, materials_, media_;
 };
 
 }  // namespace hyades::core::pbrt

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <map>
 #include <string>
 #include <unordered_map>
 #include <unordered_set>
@@ -34,11 +35,11 @@ class Materials {
 
   Context& context_;
   Textures& textures_;
-  std::unordered_map<std::string, const NamedEntity*> named_;
+  std::map<std::string, const NamedEntity*> named_;
   std::unordered_map<const Entity*, WrittenMaterial> written_;
-  std::unordered_set<const Entity*> making_;               ///< those that are made of each other
-  std::unordered_map<std::string, std::string> same_;      ///< text -> name, of those without one
-  std::unordered_map<std::string, std::string> cut_outs_;  ///< material and opacity -> name
+  std::unordered_set<const Entity*> making_;     ///< those that are made of each other
+  std::map<std::string, std::string> same_;      ///< text -> name, of those without one
+  std::map<std::string, std::string> cut_outs_;  ///< material and opacity -> name
   LayerAnswers layers_;
   friend class MaterialKinds;
 };

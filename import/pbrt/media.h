@@ -1,8 +1,8 @@
 #pragma once
 
 #include <cstddef>
+#include <map>
 #include <string>
-#include <unordered_map>
 
 #include "import/pbrt/context.h"
 
@@ -19,8 +19,8 @@ class Media {
 
  private:
   Context& context_;
-  std::unordered_map<std::string, size_t> by_name_;
-  std::unordered_map<std::string, std::string> written_;  ///< by name, and body where that matters
+  std::map<std::string, size_t> by_name_;
+  std::map<std::string, std::string> written_;  ///< by name, and body where that matters
 };
 
 /// The medium of a subsurface material; its name.

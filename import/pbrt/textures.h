@@ -1,5 +1,6 @@
 #pragma once
 
+#include <map>
 #include <optional>
 #include <string>
 #include <unordered_map>
@@ -43,7 +44,7 @@ class Textures {
   YamlPtr make(bool floats, const NamedEntity& entity);
 
   Context& context_;
-  std::unordered_map<std::string, const NamedEntity*> float_textures_, spectrum_textures_;
+  std::map<std::string, const NamedEntity*> float_textures_, spectrum_textures_;
   std::unordered_map<const NamedEntity*, Made> made_;
   int depth_ = 0;  ///< how many that are made of each other are being made
 };

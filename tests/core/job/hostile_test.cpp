@@ -1,9 +1,14 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cstdint>
 #include <cstdlib>
+#include <cstring>
 #include <ctime>
+#include <functional>
 #include <random>
+#include <string>
+#include <vector>
 
 #include "core/job/parse.h"
 #include "core/job/render_key.h"
@@ -98,6 +103,104 @@ TEST(HostileJob, ManyKeysThatAreLikeOthers) {
   const HostileReading reading = read_hostile(text);
   EXPECT_THAT(reading.first(), HasSubstr("unknown key 'a0'"));
   EXPECT_LT(reading.seconds, kPatience);
+}
+
+/// What libstdc++ multiplies by in std::hash of texts, which is MurmurHash64A (Austin Appleby).
+constexpr uint64_t kMurmur = 0xc6a4a7935bd1e995U;
+
+uint64_t shift_mix(uint64_t value) { return value ^ (value >> 47U); }
+
+/// Texts of letters and digits for which std::hash gives the same number, by 16 bytes at a time
+/// that lead from one state to the same next one.
+std::vector<std::string> texts_of_one_hash(size_t count) {
+  constexpr size_t kChoices = 20;
+  constexpr size_t kBlocks = 4;
+  uint64_t inverse = 1;  // of kMurmur modulo 2^64, by Newton's steps
+  for (int i = 0; i < 6; ++i) inverse *= 2 - kMurmur * inverse;
+  const auto mixed = [](uint64_t word) { return shift_mix(word * kMurmur) * kMurmur; };
+  const auto unmixed = [&](uint64_t word) { return shift_mix(word * inverse) * inverse; };
+  constexpr std::string_view kPlain =
+      "0123456789ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz";
+  std::mt19937 random(7);
+  const auto plain_word = [&] {
+    std::string word(8, '0');
+    for (char& letter : word) letter = kPlain[random() % kPlain.size()];
+    return word;
+  };
+  const auto number = [](const std::string& word) {
+    uint64_t value = 0;
+    std::memcpy(&value, word.data(), 8);
+    return value;
+  };
+  std::vector<std::string> texts = {""};
+  uint64_t state = 0xc70f6907U ^ (16 * kBlocks * kMurmur);
+  for (size_t block = 0; block < kBlocks; ++block) {
+    const auto after_one = [&](const std::string& word) {
+      return (state ^ mixed(number(word))) * kMurmur;
+    };
+    std::vector<std::string> choices = {plain_word() + plain_word()};
+    const uint64_t next = after_one(choices[0].substr(0, 8)) ^ mixed(number(choices[0].substr(8)));
+    while (choices.size() < kChoices) {
+      const std::string first = plain_word();
+      const uint64_t second = unmixed(after_one(first) ^ next);
+      std::string word(8, '0');
+      std::memcpy(word.data(), &second, 8);
+      if (word.find_first_not_of(kPlain) == std::string::npos) choices.push_back(first + word);
+    }
+    state = next * kMurmur;
+    std::vector<std::string> longer;
+    for (const std::string& text : texts) {
+      for (const std::string& choice : choices) longer.push_back(text + choice);
+    }
+    texts = std::move(longer);
+  }
+  texts.resize(count);
+  return texts;
+}
+
+/// A table of hashes is a list where somebody chose the keys so.
+TEST(HostileJob, ManyKeysOfOneHash) {
+  const std::vector<std::string> keys = texts_of_one_hash(150'000);
+  ASSERT_EQ(std::hash<std::string>()(keys.front()), std::hash<std::string>()(keys.back()));
+  std::string text = "hyades: 1\nmaterials:\n";
+  for (const std::string& key : keys) text += "  " + key + ": {like: " + keys.front() + "}\n";
+  const HostileReading reading = read_hostile(text);
+  EXPECT_THAT(reading.first(), HasSubstr("which in the end is like itself"));
+  EXPECT_LT(reading.seconds, kPatience);
+  MemoryAssets assets;
+  std::string lights = "lights:\n";
+  std::string materials = "materials:\n";
+  for (size_t i = 0; i < keys.size(); i += 2) {
+    materials += "  " + keys[i] + ": {type: mirror}\n";
+    lights += "  " + keys[i + 1] + ": {type: point}\n";
+  }
+  assets.add("materials.yaml", materials);
+  assets.add("lights.yaml", lights);
+  const HostileReading joined =
+      read_hostile("hyades: 1\ninclude: [materials.yaml, lights.yaml]\n", assets);
+  EXPECT_EQ(joined.first(), "");
+  EXPECT_LT(joined.seconds, kPatience);
+}
+
+/// A file of many keys and files of few, which cost what they hold, not what there is already.
+TEST(HostileJob, IncludesCostWhatTheyHold) {
+  MemoryAssets assets;
+  std::string many = "materials:\n";
+  for (int i = 0; i < 150'000; ++i) many += "  m" + std::to_string(i) + ": {type: mirror}\n";
+  assets.add("many.yaml", many);
+  const auto seconds_with = [&](int files) {
+    std::string text = "hyades: 1\ninclude:\n  - many.yaml\n";
+    for (int i = 0; i < files; ++i) {
+      const std::string name = "f" + std::to_string(i) + ".yaml";
+      assets.add(name, "materials:\n  f" + std::to_string(i) + ": {type: mirror}\n");
+      text += "  - " + name + "\n";
+    }
+    const HostileReading reading = read_hostile(text, assets);
+    EXPECT_EQ(reading.first(), "");
+    return reading.seconds;
+  };
+  // Joined with all before it, each would take a part of what the large file takes: 15 times it.
+  EXPECT_LT(seconds_with(250), 4.0 * seconds_with(1));
 }
 
 TEST(HostileJob, LikeBomb) {
