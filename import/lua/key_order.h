@@ -1,6 +1,6 @@
 #pragma once
 
-#include <lua.hpp>
+#include "import/lua/lua_api.h"
 
 namespace hyades::core::lua {
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <lua.hpp>
+#include "import/lua/lua_api.h"
 
 /// What scripts have of Lua's libraries: `base`, `string`, `table`, `utf8` and `math` without what
 /// reaches the machine (files, modules, compiled code), takes time that nobody counts, or differs

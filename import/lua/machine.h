@@ -7,10 +7,9 @@
 #include <string_view>
 #include <vector>
 
-#include <lua.hpp>
-
 #include "core/base/result.h"
 #include "core/job/yaml_tree.h"
+#include "import/lua/lua_api.h"
 
 namespace hyades::core::lua {
 

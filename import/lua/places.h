@@ -2,9 +2,8 @@
 
 #include <vector>
 
-#include <lua.hpp>
-
 #include "core/geometry/point_instancer.h"
+#include "import/lua/lua_api.h"
 
 namespace hyades::core::lua {
 

@@ -2,9 +2,8 @@
 
 #include <string>
 
-#include <lua.hpp>
-
 #include "core/job/scene_document.h"
+#include "import/lua/lua_api.h"
 
 namespace hyades::core::lua {
 

@@ -1,9 +1,8 @@
 #pragma once
 
-#include <lua.hpp>
-
 #include "core/base/result.h"
 #include "core/job/yaml_tree.h"
+#include "import/lua/lua_api.h"
 
 namespace hyades::core::lua {
 
