@@ -15,8 +15,6 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr std::string_view kUdim = "<UDIM>";
-/// Files that a pattern may mean: links within a folder may lead back into it, over and over.
-constexpr size_t kMostMeant = size_t{1} << 17;
 
 /// Whether `path` lies in `folder` or below it; both canonical.
 bool is_inside(const fs::path& path, const fs::path& folder) {
@@ -65,15 +63,19 @@ Status SceneLinks::check_one(const std::string& base, const std::string& file) c
 }
 
 Status SceneLinks::check(const std::string& scene, const std::string& file) const {
-  if (!looked_at_) return {};
+  if (!left_) return {};
   const std::string base = fs::path(scene).parent_path().string();
   std::vector<fs::path> meant = {fs::path()};
   for (const fs::path& step : fs::path(file)) {
     std::vector<fs::path> longer;
     for (const fs::path& way : meant) {
+      const size_t before = longer.size();
       add_meant(fs::path(folder_), way, step.string(), longer);
-      if (longer.size() <= kMostMeant) continue;
-      return Error{file + ": may mean more than " + std::to_string(kMostMeant) +
+      // A name without marks means itself.
+      const auto more = static_cast<int64_t>(longer.size() - before) - 1;
+      if (more == 0 || (*left_ -= more) >= 0) continue;
+      return Error{file + ": the patterns of the scene may mean more than " +
+                   std::to_string(kMostMeant) +
                    " files, expected fewer marks in the names of folders"};
     }
     meant = std::move(longer);

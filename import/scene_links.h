@@ -1,5 +1,8 @@
 #pragma once
 
+#include <atomic>
+#include <cstdint>
+#include <memory>
 #include <string>
 #include <utility>
 
@@ -9,13 +12,14 @@ namespace hyades::core {
 
 /// Links of the disk that lead out of a scene's folder. A scene may name files of its own folder
 /// only (within_folder()); with a link in that folder it could name any, so they are followed only
-/// where somebody said so. Immutable.
+/// where somebody said so. Thread-safe; copies share what they may still look at.
 class SceneLinks {
  public:
   /// Links are not looked at.
   SceneLinks() = default;
   /// `folder`: on the disk, where references begin.
-  explicit SceneLinks(std::string folder) : folder_(std::move(folder)), looked_at_(true) {}
+  explicit SceneLinks(std::string folder)
+      : folder_(std::move(folder)), left_(std::make_shared<std::atomic<int64_t>>(kMostMeant)) {}
 
   /// Whether `file`, as a reference that scene file `scene` names, lies in the scene's folder or
   /// below it when all links are followed. An error that names the link and says what to do. Files
@@ -26,8 +30,12 @@ class SceneLinks {
  private:
   Status check_one(const std::string& base, const std::string& file) const;
 
+  /// Files that patterns may mean, all together: links within a folder may lead back into it, over
+  /// and over.
+  static constexpr int64_t kMostMeant = int64_t{1} << 18;
+
   std::string folder_;
-  bool looked_at_ = false;
+  std::shared_ptr<std::atomic<int64_t>> left_;  ///< of kMostMeant; null: links are not looked at
 };
 
 }  // namespace hyades::core

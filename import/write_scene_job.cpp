@@ -33,6 +33,7 @@ using Kind = YamlNode::Kind;
 
 /// Of a scene that moves for longer, the first so many frames are written.
 constexpr int kMostFrames = 100'000;
+constexpr size_t kMostMadeFiles = 1'000'000;
 
 /// A tree with some of its maps replaced: `change` gets each map after those within it, and answers
 /// what stands in its place.
@@ -69,6 +70,7 @@ class Writer {
     if (auto free = check_free(request_.job); !free) return free.error();
     // Paths lead through it.
     if (auto made = make_folder(folder_); !made) return made.error();
+    if (auto good = check_script(); !good) return good.error();
     auto job = read();
     if (!job) return job.error();
     written_.notes = std::move(job->notes);
@@ -76,6 +78,10 @@ class Writer {
     find_frames(*job->tree);
     const YamlPtr tree = changed(job->tree, [&](const YamlPtr& map) { return mesh_as_ply(map); });
     if (status_) find_made(*tree);
+    if (wanted_.size() > kMostMadeFiles) {
+      status_ = Error{request_.scene + ": it names more than " + std::to_string(kMostMadeFiles) +
+                      " files that are made of it"};
+    }
     if (!status_) return status_.error();
     for (const auto& [name, in_scene] : wanted_) {
       if (auto done = copy(name, in_scene); !done) return done.error();
@@ -107,12 +113,33 @@ class Writer {
     return job;
   }
 
+  /// What a script says is its word, which goes for files of its folder only. That of the job which
+  /// is written goes for all files.
+  Status check_script() const {
+    if (!is_script_file(request_.scene)) return {};
+    JobFileOptions how;
+    how.missing = request_.missing;
+    how.follow_links = request_.follow_links;
+    how.set = request_.set;
+    const auto script = JobFiles::open(request_.scene, how);
+    if (!script) return script.error();
+    const auto text = (*script)->files().open((*script)->document());
+    if (!text) return text.error();
+    Diagnostics diagnostics;
+    (void)parse_job({text->chars(), text->size()}, request_.scene, (*script)->files(), diagnostics);
+    return refuse_what_would_not_render(diagnostics);
+  }
+
   /// Whether the job can be rendered: a scene may ask for what no job allows, or for a picture that
   /// is not there.
   Status check(const std::string& text) {
     Diagnostics diagnostics;
     (void)parse_job(text, std::filesystem::path(request_.job).filename().string(), importing_,
                     diagnostics);
+    return refuse_what_would_not_render(diagnostics);
+  }
+
+  static Status refuse_what_would_not_render(const Diagnostics& diagnostics) {
     if (diagnostics.empty()) return {};
     return Error{"the job was not written, for it would not render:\n" + diagnostics.to_string()};
   }
@@ -208,6 +235,7 @@ class Writer {
         wanted_[made_ + inside] = inside;
       } else {
         for (const int32_t frame : frames_) {
+          if (wanted_.size() > kMostMadeFiles) break;
           const std::string file = output_path(inside, frame);
           wanted_[made_ + file] = file;
         }

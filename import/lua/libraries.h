@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstdint>
+
 #include "import/lua/lua_api.h"
 
 /// What scripts have of Lua's libraries: `base`, `string`, `table`, `utf8` and `math` without what
@@ -18,6 +20,11 @@ void open_math(lua_State* state);    ///< part of open_libraries()
 /// Pushes the value at `at` as a text: as Lua does, but tables and functions by their type alone,
 /// without an address.
 void push_text(lua_State* state, int at);
+
+/// How many tables are asked for an item that the one at `at` does not have, itself among them: it
+/// may pass the question on (`event` is "__index" or "__newindex"), to a text too, and so may that
+/// one. Of functions that are asked Lua counts itself.
+uint64_t tables_asked(lua_State* state, int at, const char* event);
 
 /// Replaces function `name` of the library on top of the stack: `guard` gets the original as its
 /// first upvalue, for call_original().

@@ -122,12 +122,14 @@ class ScriptSource : public SceneSource {
     auto result = run_script(run);
     if (!result) return result;
     for (auto& [name, bytes] : result->made) {
-      if (!made_.emplace(name, bytes).second) continue;
-      made_bytes_ += bytes.size();
+      if (made_.contains(name)) continue;
+      if (made_in_all + bytes.size() > kMostMade) {
+        return Error{fmt::format("{}: more than {} of copies, of all scripts and frames together",
+                                 script_, format_bytes(kMostMade))};
+      }
       made_in_all += bytes.size();
-      if (made_in_all <= kMostMade) continue;
-      return Error{fmt::format("{}: more than {} of copies, of all scripts and frames together",
-                               script_, format_bytes(kMostMade))};
+      made_bytes_ += bytes.size();
+      made_.emplace(name, bytes);
     }
     return result;
   }

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <string_view>
 
 #include "import/lua/libraries.h"
 #include "import/lua/machine.h"
@@ -19,21 +20,24 @@ lua_Integer length_at(lua_State* state, int at) {
   return static_cast<lua_Integer>(lua_rawlen(state, at));
 }
 
-/// How many tables are asked for an item that the one at `at` does not have, itself among them: it
-/// may pass the question on (`event` is "__index" or "__newindex"), and so may that one. Of
-/// functions that are asked Lua counts itself.
+}  // namespace
+
 uint64_t tables_asked(lua_State* state, int at, const char* event) {
   constexpr uint64_t kMost = 2000;  // after which Lua calls it a loop
   const int top = lua_gettop(state);
   lua_pushvalue(state, at);
   uint64_t asked = 1;
-  while (asked < kMost && luaL_getmetafield(state, -1, event) == LUA_TTABLE) {
+  while (asked < kMost) {
+    const int next = luaL_getmetafield(state, -1, event);
+    if (next == LUA_TNIL || next == LUA_TFUNCTION) break;
     lua_replace(state, -2);
     ++asked;
   }
   lua_settop(state, top);
   return asked;
 }
+
+namespace {
 
 /// Counts the items from `first` to `last` of the list at `list`, which are read and written there.
 void spend_range(lua_State* state, int list, lua_Integer first, lua_Integer last) {
@@ -79,14 +83,17 @@ int guard_sort(lua_State* state) {
     return luaL_error(state, "a comparison that is a built-in function, expected one of Lua");
   }
   const lua_Integer length = length_at(state, 1);
-  size_t longest = 1;  // text, of which each comparison may look at all
+  uint64_t most = 0;  // steps of a comparison, which may look at all of a text, NUL by NUL
   for (lua_Integer i = 1; i <= length && lua_isnoneornil(state, 2); ++i) {
-    if (lua_rawgeti(state, 1, i) == LUA_TSTRING)
-      longest = std::max(longest, size_t{lua_rawlen(state, -1)});
+    if (lua_rawgeti(state, 1, i) == LUA_TSTRING) {
+      constexpr size_t kPerStep = 16;  // bytes
+      const std::string_view text(lua_tostring(state, -1), lua_rawlen(state, -1));
+      const auto ends = static_cast<size_t>(std::count(text.begin(), text.end(), '\0'));
+      most = std::max(most, uint64_t{text.size() / kPerStep + ends});
+    }
     lua_pop(state, 1);
   }
-  constexpr size_t kPerStep = 16;  // bytes
-  Machine::of(state).spend(8 * static_cast<uint64_t>(length) * (longest / kPerStep));
+  Machine::of(state).spend(8 * static_cast<uint64_t>(length) * most);
   spend_range(state, 1, 1, 8 * length);
   return call_original(state);
 }

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -65,6 +66,23 @@ int guard_pattern(lua_State* state, bool knows_anchor) {
 
 int guard_matching(lua_State* state) { return guard_pattern(state, true); }
 
+/// gsub(text, pattern, by, most): what stands for a match is made anew for each.
+int guard_replacing(lua_State* state) {
+  const auto places = static_cast<double>(text_at(state, 1).size()) + 1.0;
+  const auto most = static_cast<double>(luaL_optinteger(state, 4, INT64_MAX));
+  double each = 0.0;
+  if (lua_type(state, 3) == LUA_TSTRING) {
+    const std::string_view by = text_at(state, 3);
+    const auto parts = static_cast<double>(std::count(by.begin(), by.end(), '%'));
+    each = static_cast<double>(by.size()) / kComparedPerStep + parts;
+  } else if (lua_istable(state, 3)) {
+    each = static_cast<double>(tables_asked(state, 3, "__index"));
+  }
+  const double steps = std::clamp(most, 0.0, places) * each;
+  Machine::of(state).spend(static_cast<uint64_t>(std::min(steps, 1e18)));
+  return guard_matching(state);
+}
+
 int guard_all_matches(lua_State* state) { return guard_pattern(state, false); }
 
 int guard_find(lua_State* state) {
@@ -116,7 +134,7 @@ void open_text(lua_State* state) {
   lua_setfield(state, -2, "dump");
   guard_function(state, "find", guard_find);
   guard_function(state, "match", guard_matching);
-  guard_function(state, "gsub", guard_matching);
+  guard_function(state, "gsub", guard_replacing);
   guard_function(state, "gmatch", guard_all_matches);
   guard_function(state, "rep", guard_repeat);
   guard_function(state, "format", guard_format);

@@ -58,6 +58,14 @@ TEST(LuaSandbox, WhatDoesNotEndIsEnded) {
            "table.move(t, 1, 100000, 1, {})",
            "local t = {} for i = 1, 1000 do t = setmetatable({}, {__newindex = t}) end "
            "table.move({}, 1, 100000, 1, t)",
+           "local t = {} for i = 1, 1000 do t = setmetatable({}, {__index = t}) end "
+           "string.gsub(('a'):rep(100000), '.', t)",
+           "local t = {} for i = 1, 1000 do t = setmetatable({}, {__index = t}) end "
+           "getmetatable('').__index = t table.move(setmetatable({}, {__index = ''}), 1, 100000, "
+           "1, {})",
+           // So is what stands for a match, and what texts have between zeros.
+           "string.gsub(('a'):rep(100000), '', ('%0'):rep(1000))",
+           "local t, s = {}, ('\\0'):rep(10000) for i = 1, 200 do t[i] = s end table.sort(t)",
        }) {
     EXPECT_THAT(attack(script), AllOf(StartsWith("a/scene.lua:1: "), HasSubstr(too_long)))
         << script;
@@ -149,6 +157,37 @@ TEST(LuaSandbox, FilesOfMediaAreReadByItsWord) {
   EXPECT_THAT(job_complaints("include: in/by_include.lua\n", files), HasSubstr(leads_out));
   EXPECT_THAT(job_complaints("media: {file: in/m.yaml}\n", files), Not(HasSubstr(leads_out)))
       << "a job may";
+}
+
+TEST(LuaSandbox, FilesOfMediaAreNoScenes) {
+  MemoryAssets files;
+  files.add("in/m.lua", "error('it ran')");
+  files.add("in/s.lua", "return {media = {file = 'm.lua'}}");
+  files.add("in/d.lua", "return {media = {file = 'm.lua,fps=24.yaml'}}");
+  for (const char* job : {"include: in/s.lua\n", "include: in/d.lua\n", "media: {file: in/m.lua}\n",
+                          "media: {file: in/m.gltf}\n"}) {
+    EXPECT_THAT(job_complaints(job, files),
+                AllOf(HasSubstr("file of media"), HasSubstr("expected a file of media"),
+                      Not(HasSubstr("it ran"))))
+        << job;
+  }
+}
+
+/// What a script makes is kept until the job is read.
+TEST(LuaSandbox, NoneRunsWhereThereIsTooMuchAlready) {
+  MemoryAssets files;
+  std::string includes;
+  for (const std::string name : {"a", "b", "c"}) {
+    std::string many = name + ": [";
+    for (int i = 0; i < 900'000; ++i) many += "1,";
+    files.add(name + ".yaml", many + "]\n");
+    includes += name + ".yaml, ";
+  }
+  files.add("s.lua", "error('it ran')");
+  EXPECT_THAT(job_complaints("include: [" + includes + "s.lua]\n", files),
+              AllOf(HasSubstr("the included files have more than 2097152 values in all"),
+                    Not(HasSubstr("it ran"))));
+  EXPECT_THAT(job_complaints("include: [a.yaml, s.lua]\n", files), HasSubstr("it ran"));
 }
 
 TEST(LuaSandbox, ATextThatIsReturnedOftenCountsEachTime) {
