@@ -22,6 +22,8 @@ namespace {
 
 constexpr Duration kClock = std::chrono::milliseconds(50);
 constexpr Duration kPokeEvery = std::chrono::milliseconds(200);
+/// What jobs wait for is looked for among all workers: of the time, one part in so many goes there.
+constexpr int kObstaclesShare = 20;
 
 SchedulerOptions scheduler_options(const ControllerOptions& options, uint64_t incarnation) {
   SchedulerOptions scheduler;
@@ -88,7 +90,8 @@ struct Controller::Parts {
   Diagnosis diagnosis{context, dispatcher, jobs, workers, sessions, disk, videos};
   ActionExecutor executor{context, jobs,      workers, sessions, films,
                           frames,  divergent, records, videos};
-  TimePoint last_poke;  ///< of the clock
+  TimePoint last_poke;   ///< of the clock
+  TimePoint look_again;  ///< of the clock, for obstacles
   farm::RetryQueue clock{1, kClock};
 };
 
@@ -146,7 +149,11 @@ void Controller::Parts::tick() {
   last_poke = now;
   workers.note_speeds(now, dispatcher.scheduler());
   records.look_after(now, disk.is_full(), dispatcher.scheduler());
-  diagnosis.note_obstacles();
+  if (now >= look_again) {
+    const auto begun = std::chrono::steady_clock::now();
+    diagnosis.note_obstacles();
+    look_again = now + kObstaclesShare * (std::chrono::steady_clock::now() - begun);
+  }
   watchers.poke_changed();
 }
 
