@@ -101,8 +101,7 @@ bool Diagnosis::explain_open(uint64_t id, v1::ExplainResponse& response) {
   }
   std::set<std::string> classes;  // of the workers that could take units
   for (const auto& [worker, session] : workers_.all()) {
-    if (!session.joined || session.state != v1::WORKER_STATE_ACTIVE) continue;
-    classes.insert(session.hello.worker_class());
+    if (session.may_take_units()) classes.insert(session.hello.worker_class());
   }
   const bool may_begin = explain_workers(*active, !classes.empty(), reasons);
   const bool orphans = explain_frames(*active, classes, reasons);

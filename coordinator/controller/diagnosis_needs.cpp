@@ -44,22 +44,21 @@ bool has_memory(const v1::Hello& hello, uint64_t bytes) {
 /// Whether a worker is there that could take units.
 bool Diagnosis::anybody() const {
   return std::any_of(workers_.all().begin(), workers_.all().end(),
-                     [](const auto& entry) HYADES_REQUIRES(state_lock) {
-                       return entry.second.joined && entry.second.state == v1::WORKER_STATE_ACTIVE;
-                     });
+                     [](const auto& entry)
+                         HYADES_REQUIRES(state_lock) { return entry.second.may_take_units(); });
 }
 
 /// Why none of the workers that could take units may take this job's; nothing where one may, or
 /// where it asks for nothing.
 std::string Diagnosis::unmet_needs(const JobNeeds& job) const {
-  if (job.tags.empty() && job.memory == 0) return {};
+  if (!job.any()) return {};
   uint64_t most_memory = 0;
   bool enough_memory = false;
   bool suits = false;
   std::vector<std::string> missing = job.tags;
   for (const auto& entry : workers_.all()) {
     const WorkerSession& session = entry.second;
-    if (!session.joined || session.state != v1::WORKER_STATE_ACTIVE) continue;
+    if (!session.may_take_units()) continue;
     const v1::Hello& hello = session.hello;
     const auto has = [&](const std::string& tag)
                          HYADES_REQUIRES(state_lock) { return has_tag(hello, tag); };

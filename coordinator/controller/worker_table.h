@@ -62,6 +62,11 @@ struct WorkerSession {
   Speed speed HYADES_GUARDED_BY(state_lock);
   int64_t joined_ms HYADES_GUARDED_BY(state_lock) = 0;
   int64_t heard_ms HYADES_GUARDED_BY(state_lock) = 0;
+
+  /// Whether it is there, neither drained nor in quarantine.
+  bool may_take_units() const HYADES_REQUIRES(state_lock) {
+    return joined && state == v1::WORKER_STATE_ACTIVE;
+  }
 };
 
 /// The sessions of all workers, those that are gone for a while too, and who is in quarantine.
