@@ -1,5 +1,7 @@
 #include "cli/frame_range.h"
 
+#include <algorithm>
+#include <cstddef>
 #include <cstdio>
 
 #include <fmt/format.h>
@@ -11,9 +13,11 @@ std::string no_frames_error(const std::string& text) {
   return "expected frames such as 7, 1-10 or 1-10x2";
 }
 
-core::Result<FrameRange> parse_frames(const core::FramesDesc& job, const std::string& text) {
-  FrameRange range{job.first, job.last, job.step};
-  if (text.empty()) return range;
+namespace {
+
+/// Of the form alone.
+core::Result<FrameRange> read_range(const std::string& text) {
+  FrameRange range;
   int used = 0;
   const auto whole = [&] { return used == static_cast<int>(text.size()); };
   if (std::sscanf(text.c_str(), "%d-%dx%d%n", &range.first, &range.last, &range.step, &used) < 3 ||
@@ -32,6 +36,33 @@ core::Result<FrameRange> parse_frames(const core::FramesDesc& job, const std::st
     return core::Error{fmt::format(
         "--frames {}: expected a range from its first frame on, such as 1-10 or 1-10x2", text)};
   }
+  return range;
+}
+
+}  // namespace
+
+core::Result<std::vector<FrameRange>> parse_frame_list(const std::string& text) {
+  std::vector<FrameRange> ranges;
+  for (size_t begin = 0; begin <= text.size();) {
+    const size_t end = std::min(text.find(',', begin), text.size());
+    const auto range = read_range(text.substr(begin, end - begin));
+    if (!range) return range.error();
+    ranges.push_back(*range);
+    begin = end + 1;
+  }
+  return ranges;
+}
+
+std::string frame_list_error(const std::string& text) {
+  const auto ranges = parse_frame_list(text);
+  return ranges ? std::string() : ranges.error().message;
+}
+
+core::Result<FrameRange> parse_frames(const core::FramesDesc& job, const std::string& text) {
+  if (text.empty()) return FrameRange{job.first, job.last, job.step};
+  const auto read = read_range(text);
+  if (!read) return read.error();
+  const FrameRange range = *read;
   if (range.first < job.first || range.last > job.last) {
     return core::Error{fmt::format("--frames {}: expected frames within the job's range {}-{}",
                                    text, job.first, job.last)};

@@ -17,6 +17,7 @@
 #include "cli/client/find_job.h"
 #include "cli/client/show.h"
 #include "cli/client_commands.h"
+#include "cli/frame_range.h"
 #include "cli/transfer_display.h"
 #include "core/base/hash.h"
 #include "core/base/text.h"
@@ -32,7 +33,7 @@ constexpr size_t kMostNamed = 10;
 struct FetchOptions {
   std::string job;
   std::string folder = ".";
-  std::vector<int32_t> frames;
+  std::string frames;
   std::optional<int32_t> film;
   bool follow = false;
   bool list = false;
@@ -54,7 +55,8 @@ void declare(CLI::App& app, FetchOptions& options) {
   app.add_option("-o,--output", options.folder, "folder for the files")
       ->capture_default_str()
       ->type_name("DIR");
-  app.add_option("--frame", options.frames, "only these frames")->delimiter(',');
+  app.add_option("--frames,--frame", options.frames, "only these frames: 7,8 or 1-10 or 1-10x2")
+      ->check(frame_list_error);
   app.add_flag("--follow", options.follow, "stay, and bring each file as it is finished");
   app.add_option("--film", options.film,
                  "instead, this frame's film as it is now, also in mid-render (for 'hyades merge' "
@@ -68,7 +70,7 @@ void declare(CLI::App& app, FetchOptions& options) {
   app.footer(
       "examples:\n"
       "  hyades fetch perlin-sphere --output out\n"
-      "  hyades fetch 12 --frame 7,8 --follow\n"
+      "  hyades fetch 12 --frames 7,8 --follow\n"
       "  hyades fetch 12 --film 7\n"
       "Goes on where an earlier run stopped; every file is checked against its SHA-256 before it "
       "gets its\n"
@@ -191,10 +193,13 @@ Outcome what_is_missing(const v1::GetJobResponse& response, const std::vector<in
 /// One run of the command.
 class FetchRun {
  public:
-  FetchRun(FarmClient& client, const FetchOptions& options, uint64_t id)
+  /// `frames`: empty for all.
+  FetchRun(FarmClient& client, const FetchOptions& options, uint64_t id,
+           const std::vector<int32_t>& frames)
       : client_(client),
         options_(options),
         id_(id),
+        frames_(frames),
         target_(target_of(options)),
         display_("fetching", options.quiet || options.list) {}
 
@@ -202,7 +207,7 @@ class FetchRun {
     v1::OutputsRequest request;
     request.set_job(id_);
     request.set_follow(options_.follow);
-    for (const int32_t frame : options_.frames) {
+    for (const int32_t frame : frames_) {
       v1::FrameRange& range = *request.add_frames();
       range.set_first(frame);
       range.set_last(frame);
@@ -273,6 +278,7 @@ class FetchRun {
   FarmClient& client_;
   const FetchOptions& options_;
   uint64_t id_;
+  std::vector<int32_t> frames_;
   FetchTarget target_;
   TransferDisplay display_;
   std::set<std::string> seen_;
@@ -296,8 +302,11 @@ int fetch_command(int argc, char** argv) {
     const Outcome failure = fetch_film(*client, id, options);
     return failure ? app.report(*failure) : kDone;
   }
-  if (auto failure = check_frames(*client, id, options.frames)) return app.report(*failure);
-  FetchRun run(*client, options, id);
+  std::vector<int32_t> frames;
+  if (auto failure = select_frames(*client, id, options.frames, frames)) {
+    return app.report(*failure);
+  }
+  FetchRun run(*client, options, id, frames);
   const Outcome failure = run.run();
   run.print();
   if (failure) return app.report(*failure);
@@ -305,7 +314,7 @@ int fetch_command(int argc, char** argv) {
   v1::GetJobResponse now;
   if (auto gone = client->get(id, now)) return app.report(*gone);
   if (run.found_nothing()) return app.report(why_nothing(now.job()));
-  const Outcome missing = what_is_missing(now, options.frames, options.quiet || options.json);
+  const Outcome missing = what_is_missing(now, frames, options.quiet || options.json);
   return missing ? app.report(*missing) : kDone;
 }
 

@@ -12,6 +12,7 @@
 #include <fmt/format.h>
 
 #include "cli/client/show.h"
+#include "cli/frame_range.h"
 #include "core/base/text.h"
 #include "farm/job_state.h"
 
@@ -23,17 +24,26 @@ constexpr size_t kMostCandidates = 10'000;  ///< for 'did you mean'
 
 }  // namespace
 
-Outcome check_frames(FarmClient& client, uint64_t id, const std::vector<int32_t>& frames) {
-  if (frames.empty()) return std::nullopt;
+Outcome select_frames(FarmClient& client, uint64_t id, const std::string& text,
+                      std::vector<int32_t>& frames) {
+  if (text.empty()) return std::nullopt;
+  const auto ranges = parse_frame_list(text);
+  if (!ranges) return Failure{kBadArguments, ranges.error().message};
   v1::GetJobResponse response;
   if (auto failure = client.get(id, response)) return failure;
   std::set<int32_t> known;
   for (const v1::Frame& frame : response.frames()) known.insert(frame.frame());
-  for (const int32_t frame : frames) {
-    if (!known.contains(frame)) {
-      return Failure{kUnknown, fmt::format("job {} has no frame {}", id, frame)};
+  std::set<int32_t> chosen;
+  for (const FrameRange& range : *ranges) {
+    for (int64_t frame = range.first; frame <= range.last; frame += range.step) {
+      const auto number = static_cast<int32_t>(frame);
+      if (!known.contains(number)) {
+        return Failure{kUnknown, fmt::format("job {} has no frame {}", id, frame)};
+      }
+      chosen.insert(number);
     }
   }
+  frames.assign(chosen.begin(), chosen.end());
   return std::nullopt;
 }
 

@@ -22,8 +22,10 @@ enum class Namesakes {
 /// argument. Failures name what is near.
 Outcome find_job(FarmClient& client, const std::string& text, Namesakes namesakes, uint64_t& id);
 
-/// A failure where `frames` are not all of the job; an empty list is not looked at.
-Outcome check_frames(FarmClient& client, uint64_t id, const std::vector<int32_t>& frames);
+/// Puts into `frames` which frames of the job a text of --frames means (parse_frame_list()), in
+/// ascending order; none where it is empty. A failure where the job does not have them all.
+Outcome select_frames(FarmClient& client, uint64_t id, const std::string& text,
+                      std::vector<int32_t>& frames);
 
 /// The jobs that have not ended, and of the newest 200 up to `most` that ended last, the
 /// newest first; of one owner, or of all ("").

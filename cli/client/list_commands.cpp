@@ -10,6 +10,7 @@
 #include "cli/client/find_job.h"
 #include "cli/client/show.h"
 #include "cli/client_commands.h"
+#include "cli/frame_range.h"
 #include "core/base/text.h"
 
 namespace hyades::cli {
@@ -227,21 +228,24 @@ int explain_command(int argc, char** argv) {
 int logs_command(int argc, char** argv) {
   ClientApp app("logs", "Shows what has happened to a job, oldest first.");
   std::string job;
-  std::vector<int32_t> frames;
+  std::string chosen;
   bool follow = false;
   bool json = false;
   app.app().add_option("job", job, "its id, or its name (of several: the newest)")->required();
-  app.app().add_option("--frame", frames, "only these frames")->delimiter(',');
+  app.app()
+      .add_option("--frames,--frame", chosen, "only these frames: 7,8 or 1-10 or 1-10x2")
+      ->check(frame_list_error);
   app.app().add_flag("--follow", follow, "stay until the job has ended");
   app.app().add_flag("--json", json, "print one JSON object a line (field id: its number)");
-  app.give_examples({"hyades logs perlin-sphere --follow", "hyades logs 12 --frame 7,8 --json"});
+  app.give_examples({"hyades logs perlin-sphere --follow", "hyades logs 12 --frames 7,8 --json"});
   if (const auto status = app.parse(argc, argv)) return *status;
   const auto client = app.connect();
   if (!client) return kBadArguments;
   v1::LogsRequest request;
   uint64_t id = 0;
   if (auto failure = find_job(*client, job, Namesakes::newest, id)) return app.report(*failure);
-  if (auto failure = check_frames(*client, id, frames)) return app.report(*failure);
+  std::vector<int32_t> frames;
+  if (auto failure = select_frames(*client, id, chosen, frames)) return app.report(*failure);
   request.set_job(id);
   request.set_follow(follow);
   request.mutable_frames()->Add(frames.begin(), frames.end());

@@ -86,6 +86,13 @@ TEST_F(Client, FetchSaysWhichFramesFailedOrAreMissing) {
   EXPECT_EQ(ran.status, kFailed) << "the same for scripts";
   EXPECT_EQ(json::parse(ran.out).size(), 1U);
   EXPECT_EQ(with({"--frame", "1,3"}).status, kDone) << "they are all right";
+  EXPECT_EQ(with({"--frames", "1-3x2"}).status, kDone) << "the same";
+  EXPECT_TRUE(has(with({"--frames", "1,3-5"}).err, "frames 4-5 failed"));
+  for (const char* wrong : {"3-1", "1,", "1-3x0", "1 2"}) {
+    ran = with({"--frames", wrong});
+    EXPECT_EQ(ran.status, kBadArguments) << wrong;
+    EXPECT_TRUE(has(ran.err, "expected a ")) << ran.err;
+  }
   EXPECT_EQ(with({"--list"}).status, kDone);
 
   farm_.jobs[0].set_state(v1::JOB_STATE_RUNNING);
