@@ -2,11 +2,13 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <string_view>
 #include <system_error>
 
 #include "core/job/read_color.h"
@@ -101,12 +103,28 @@ bool read_quaternion(const ValueSite& site, const YamlNode& node, Animated<Vec4>
   return true;
 }
 
+/// What helps where a number was written as others have it: as a text, or with its unit.
+std::string hint_for_number(const YamlNode& found) {
+  double number = 0.0;
+  if (found.quoted) return parse_number(found.scalar, number) ? " (without quotes)" : "";
+  const std::string_view text = found.scalar;
+  const size_t end = text.find_last_of("0123456789.") + 1;
+  const size_t unit = std::min(text.find_first_not_of(' ', end), text.size());
+  if (!parse_number(text.substr(0, end), number)) return "";
+  for (const char* length : {"mm", "cm", "m", "km", "in", "ft"}) {
+    if (text.substr(unit) == length)
+      return " (without a unit: 'units' of the job is that of lengths)";
+  }
+  for (const char* angle : {"deg", "°"}) {
+    if (text.substr(unit) == angle) return " (without a unit: angles are in degrees)";
+  }
+  return "";
+}
+
 }  // namespace
 
 void complain_mismatch(const ValueSite& site, const YamlNode& found, const std::string& expected) {
-  std::string hint;
-  double number = 0.0;
-  if (found.quoted && parse_number(found.scalar, number)) hint = " (without quotes)";
+  const std::string hint = hint_for_number(found);
   site.context.complain(found.where,
                         site.label + " is " + describe(found) + ", expected " + expected + hint);
 }

@@ -51,6 +51,13 @@ TEST(Complaints, WrongTypesSayWhatWasFoundAndExpected) {
   EXPECT_EQ(complaints("camera: {fov: \"35\"}\n"),
             "job.yaml:2:15: fov is the text \"35\", expected a number above 0 and below 180 "
             "(without quotes)\n");
+  EXPECT_EQ(
+      complaints("objects: {a: {shape: sphere, radius: 10cm}}\n"),
+      "job.yaml:2:38: radius is '10cm', expected a number above 0 (without a unit: 'units' of "
+      "the job is that of lengths)\n");
+  EXPECT_EQ(complaints("camera: {fov: 35 °}\n"),
+            "job.yaml:2:15: fov is '35 °', expected a number above 0 and below 180 (without a "
+            "unit: angles are in degrees)\n");
   EXPECT_EQ(complaints("camera: {look_at: [0, 1]}\n"),
             "job.yaml:2:19: look_at is a list of 2, expected [x, y, z] (each a number or an "
             "expression)\n");
