@@ -71,7 +71,9 @@ core::Status render_swatch(const std::vector<KnownMedium>& media, const SwatchOp
   how.threads = options.threads;
   StatusLine line;
   how.progress = [&](double share) {
-    if (line.is_due()) line.show(fmt::format("{}  {:3.0f} %", progress_bar(share), 100.0 * share));
+    if (!line.is_due()) return;
+    const std::string bar = line.redraws() ? progress_bar(share) + "  " : "";
+    line.show(fmt::format("{}{:3.0f} %", bar, 100.0 * share));
   };
   const auto frame =
       core::render_frame(renderer, core::render_window(job.film), job.sampling.samples, 1, how);

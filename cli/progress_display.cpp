@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <utility>
 
 #include <fmt/format.h>
@@ -11,8 +10,6 @@
 
 namespace hyades::cli {
 namespace {
-
-constexpr auto kPlainEvery = std::chrono::seconds(10);
 
 double fraction(const coordinator::Progress& p) {
   return p.samples > 0 ? static_cast<double>(p.samples_done) / static_cast<double>(p.samples) : 0.0;
@@ -25,7 +22,7 @@ std::string percent_done(const coordinator::Progress& progress) {
 }
 
 ProgressDisplay::ProgressDisplay(std::string name, bool quiet)
-    : name_(std::move(name)), quiet_(quiet), last_(std::chrono::steady_clock::now()) {}
+    : name_(std::move(name)), quiet_(quiet) {}
 
 std::string ProgressDisplay::line(const coordinator::Progress& p) const {
   const double done = fraction(p);
@@ -45,21 +42,17 @@ std::string ProgressDisplay::line(const coordinator::Progress& p) const {
 
 void ProgressDisplay::update(const coordinator::Progress& progress) {
   if (quiet_) return;
-  const auto now = std::chrono::steady_clock::now();
   if (status_.redraws()) {
     if (status_.is_due()) status_.show(line(progress));
     return;
   }
   const int percent = static_cast<int>(100.0 * fraction(progress));
-  const bool news = percent != last_percent_ || progress.trouble != told_;
   // Why nothing happens is said at once, but once.
-  const bool at_once = !progress.trouble.empty() && progress.trouble != trouble_;
-  if (!at_once && (now - last_ < kPlainEvery || !news)) return;
-  last_ = now;
-  told_ = progress.trouble;
-  if (!told_.empty()) trouble_ = told_;
+  const bool at_once = !progress.trouble.empty() && progress.trouble != told_;
+  if (!at_once && (percent == last_percent_ || !status_.is_due())) return;
+  if (at_once) told_ = progress.trouble;
   last_percent_ = percent;
-  std::fprintf(stderr, "%s\n", line(progress).c_str());
+  status_.show(line(progress));
 }
 
 void ProgressDisplay::clear() { status_.clear(); }

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <chrono>
 #include <string>
 
 #include "cli/status_line.h"
@@ -29,10 +28,8 @@ class ProgressDisplay {
   std::string name_;
   bool quiet_;
   StatusLine status_;
-  std::chrono::steady_clock::time_point last_;
   int last_percent_ = -1;
-  std::string told_;     ///< the trouble of the line that was printed last
-  std::string trouble_;  ///< the last one that was printed
+  std::string told_;  ///< the last trouble that was printed
 };
 
 }  // namespace hyades::cli

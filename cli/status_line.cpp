@@ -5,11 +5,13 @@
 
 #include <cstdio>
 #include <cstdlib>
+#include <utility>
 
 namespace hyades::cli {
 namespace {
 
 constexpr auto kRedraw = std::chrono::milliseconds(150);
+constexpr auto kPlainEvery = std::chrono::seconds(10);
 constexpr int kBarWidth = 24;
 
 bool is_terminal() {
@@ -31,15 +33,20 @@ std::string progress_bar(double share) {
   return bar;
 }
 
-StatusLine::StatusLine() : terminal_(is_terminal()) {}
+StatusLine::StatusLine(std::function<Clock::time_point()> now)
+    : now_(std::move(now)), terminal_(is_terminal()), last_(now_()) {}
 
 bool StatusLine::is_due() const {
-  return !drawn_ || std::chrono::steady_clock::now() - last_ >= kRedraw;
+  if (!terminal_) return now_() - last_ >= kPlainEvery;
+  return !drawn_ || now_() - last_ >= kRedraw;
 }
 
 void StatusLine::show(const std::string& text) {
-  if (!terminal_) return;
-  last_ = std::chrono::steady_clock::now();
+  last_ = now_();
+  if (!terminal_) {
+    std::fprintf(stderr, "%s\n", text.c_str());
+    return;
+  }
   drawn_ = true;
   // Cut by characters, not bytes: the bar's blocks take three bytes each.
   int columns = terminal_width() - 1;

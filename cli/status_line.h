@@ -1,6 +1,7 @@
 #pragma once
 
 #include <chrono>
+#include <functional>
 #include <string>
 
 namespace hyades::cli {
@@ -8,30 +9,34 @@ namespace hyades::cli {
 /// A bar of blocks, filled by `share` (0 to 1).
 std::string progress_bar(double share);
 
-/// One line of standard error that is drawn again and again, where that is a terminal.
+/// One line of standard error that is drawn again and again, where that is a terminal; elsewhere a
+/// plain line every ten seconds.
 class StatusLine {
  public:
-  StatusLine();
+  using Clock = std::chrono::steady_clock;
+
+  explicit StatusLine(std::function<Clock::time_point()> now = Clock::now);
   ~StatusLine() { clear(); }
   StatusLine(const StatusLine&) = delete;
   StatusLine& operator=(const StatusLine&) = delete;
 
-  /// Whether lines can be drawn again at all; if not, show() prints nothing.
+  /// Whether lines can be drawn again: there is room for a bar.
   bool redraws() const { return terminal_; }
 
-  /// Whether the last drawing is long enough ago for the eye.
+  /// Whether the last line is long enough ago.
   bool is_due() const;
 
-  /// Draws `text`, cut to the terminal's width.
+  /// Draws `text`, cut to the terminal's width, or prints it where nothing can be drawn again.
   void show(const std::string& text);
 
   /// Removes the line, so that other text can be written.
   void clear();
 
  private:
+  std::function<Clock::time_point()> now_;
   bool terminal_;
   bool drawn_ = false;
-  std::chrono::steady_clock::time_point last_;
+  Clock::time_point last_;
 };
 
 }  // namespace hyades::cli

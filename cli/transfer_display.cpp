@@ -1,7 +1,6 @@
 #include "cli/transfer_display.h"
 
 #include <algorithm>
-#include <cstdio>
 
 #include <fmt/format.h>
 
@@ -13,7 +12,6 @@ using core::seconds;
 
 namespace {
 
-constexpr auto kTransferEvery = std::chrono::seconds(10);
 /// The rate is that of so long a time, looked at so often.
 constexpr auto kLately = std::chrono::seconds(10);
 constexpr auto kLook = std::chrono::milliseconds(250);
@@ -45,9 +43,9 @@ std::string transfer_line(const Transfer& transfer, bool bar) {
 
 TransferDisplay::TransferDisplay(std::string what, bool quiet,
                                  std::function<Clock::time_point()> now)
-    : quiet_(quiet), now_(std::move(now)), last_plain_(now_()) {
+    : quiet_(quiet), now_(std::move(now)), line_(now_) {
   transfer_.what = std::move(what);
-  lately_.emplace_back(last_plain_, 0);
+  lately_.emplace_back(now_(), 0);
 }
 
 void TransferDisplay::note_rate(Clock::time_point now) {
@@ -65,12 +63,7 @@ void TransferDisplay::moved(uint64_t bytes) {
   const Clock::time_point now = now_();
   note_rate(now);
   if (quiet_) return;
-  if (line_.redraws()) {
-    if (line_.is_due()) line_.show(transfer_line(transfer_, true));
-  } else if (now - last_plain_ >= kTransferEvery) {
-    last_plain_ = now;
-    std::fprintf(stderr, "%s\n", transfer_line(transfer_, false).c_str());
-  }
+  if (line_.is_due()) line_.show(transfer_line(transfer_, line_.redraws()));
 }
 
 }  // namespace hyades::cli

@@ -29,7 +29,7 @@ std::string transfer_line(const Transfer& transfer, bool bar);
 /// seconds elsewhere, nothing where `quiet`. Writes to standard error.
 class TransferDisplay {
  public:
-  using Clock = std::chrono::steady_clock;
+  using Clock = StatusLine::Clock;
 
   TransferDisplay(std::string what, bool quiet,
                   std::function<Clock::time_point()> now = Clock::now);
@@ -52,7 +52,6 @@ class TransferDisplay {
   std::function<Clock::time_point()> now_;
   Transfer transfer_;
   StatusLine line_;
-  Clock::time_point last_plain_;
   std::deque<std::pair<Clock::time_point, uint64_t>> lately_;  ///< bytes moved until then
 };
 

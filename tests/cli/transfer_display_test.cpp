@@ -108,7 +108,8 @@ TEST(TransferDisplay, OneLineThatIsDrawnAgainOnATerminal) {
 
 TEST(TransferDisplay, TheLineIsCutToTheTerminal) {
   const std::string text = on_terminal(12, "xterm");
-  EXPECT_EQ(text, "\r\033[Kuploading  \r\033[K");
+  const std::string drawn = "\r\033[Kuploading  ";
+  EXPECT_EQ(text, drawn + drawn + drawn + "\r\033[K");
 }
 
 TEST(TransferDisplay, PlainLinesOnATerminalThatCannotDrawAgain) {
