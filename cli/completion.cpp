@@ -25,6 +25,8 @@ constexpr std::string_view kBash = R"sh(_hyades() {
     COMPREPLY=($(compgen -W "$(timeout 2 "$program" jobs --all --names 2>/dev/null)" -- "$word"))
   elif [[ " drain quarantine release " == *" ${COMP_WORDS[1]} "* ]]; then
     COMPREPLY=($(compgen -W "$(timeout 2 "$program" workers --names 2>/dev/null)" -- "$word"))
+  elif [[ " ${COMP_WORDS[1]} ${COMP_WORDS[2]} " == " media "@(show|swatch)" " && $COMP_CWORD -gt 2 ]]; then
+    COMPREPLY=($(compgen -W "$("$program" media list 2>/dev/null | sed -nE '2,$s/ .*//p')" -- "$word"))
   elif [ "$COMP_CWORD" = 2 ]; then
     COMPREPLY=($(compgen -W "$("$program" "${COMP_WORDS[1]}" --help 2>/dev/null | sed -nE '/^(Subcommands|SUBCOMMANDS):/,/^$/s/^  ([a-z-]+) .*/\1/p')" -- "$word"))
   fi
@@ -53,6 +55,9 @@ _hyades() {
     compadd -- ${(f)"$(timeout 2 "$program" jobs --all --names 2>/dev/null)"}
   elif [[ " drain quarantine release " == *" ${words[2]} "* ]]; then
     compadd -- ${(f)"$(timeout 2 "$program" workers --names 2>/dev/null)"}
+  elif [[ ${words[2]} == media && ${words[3]} == (show|swatch) ]] && (( CURRENT > 3 )); then
+    compadd -- ${(f)"$("$program" media list 2>/dev/null | sed -nE '2,$s/ .*//p')"}
+    _files
   else
     local -a verbs
     (( CURRENT == 3 )) && verbs=(${(f)"$("$program" "${words[2]}" --help 2>/dev/null | sed -nE '/^(Subcommands|SUBCOMMANDS):/,/^$/s/^  ([a-z-]+) +(.*)/\1:\2/p')"})
@@ -79,6 +84,7 @@ complete -c hyades -n 'test (count (commandline -opc)) -eq 2' -a '(__hyades_verb
 complete -c hyades -n 'test (count (commandline -opc)) -gt 1; and string match -q -- "-*" (commandline -ct)' -f -a '(__hyades_options)'
 complete -c hyades -n '__fish_seen_subcommand_from status watch fetch logs trace explain pause resume cancel retry priority delete' -f -a '(timeout 2 hyades jobs --all --names 2>/dev/null)'
 complete -c hyades -n '__fish_seen_subcommand_from drain quarantine release' -f -a '(timeout 2 hyades workers --names 2>/dev/null)'
+complete -c hyades -n '__fish_seen_subcommand_from media; and __fish_seen_subcommand_from show swatch' -a '(hyades media list 2>/dev/null | sed -nE "2,\$s/ .*//p")'
 complete -c hyades -n '__fish_seen_subcommand_from completion' -f -a 'bash zsh fish'
 )sh";
 
