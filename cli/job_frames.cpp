@@ -16,6 +16,7 @@
 #include "core/base/leftovers.h"
 #include "core/base/printable.h"
 #include "core/base/version.h"
+#include "core/film/black.h"
 #include "core/film/film_exr.h"
 #include "core/finish/frame_outputs.h"
 #include "core/finish/picture.h"
@@ -147,6 +148,10 @@ core::Result<std::shared_ptr<const coordinator::FrameWork>> JobFrames::prepare(i
 
 core::Status JobFrames::finish(int32_t frame, const core::Film& film) {
   const core::FilmInfo info = film_info(frame);
+  if (core::is_black(film)) {
+    const core::MutexLock lock(totals_mutex_);
+    totals_.black.push_back(frame);
+  }
   if (auto written = write_pictures(info, film); !written) return written;
   if (!options_.write_films) return {};
   return core::write_film_exr(film_path(frame), {info, film});

@@ -26,7 +26,8 @@ struct RunTotals {
     int32_t frame = 0;
     core::BadSample sample;
   };
-  std::vector<Bad> bad;  ///< the first few
+  std::vector<Bad> bad;        ///< the first few
+  std::vector<int32_t> black;  ///< frames that no light has reached
 };
 
 /// The frames of a job for LocalRun: builds scenes, renders units, writes outputs.

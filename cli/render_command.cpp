@@ -1,5 +1,6 @@
 #include <unistd.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cstdint>
 #include <cstdio>
@@ -63,6 +64,17 @@ void print_bad_samples(const RunTotals& totals, const std::string& path) {
   }
 }
 
+/// A picture without any light is seldom meant. Parts of one may be dark.
+void warn_of_black(const RenderOptions& options, std::vector<int32_t> frames) {
+  if (frames.empty() || options.is_part() || !options.crop.empty()) return;
+  std::sort(frames.begin(), frames.end());
+  const std::string which = frames.size() == 1 ? fmt::format("frame {} is", frames.front())
+                                               : fmt::format("{} frames, {} the first, are",
+                                                             frames.size(), frames.front());
+  std::fprintf(stderr, "warning: %s black all over: no light reaches what the camera sees\n",
+               which.c_str());
+}
+
 /// Those of `numbers` whose outputs are there.
 std::vector<int32_t> written_frames(std::vector<int32_t> numbers,
                                     const coordinator::LocalOutcome& outcome) {
@@ -95,6 +107,7 @@ int report(const RenderOptions& options, const FilmRoom& room, const JobFrames& 
   const coordinator::Progress progress = run.progress();
   const RunTotals totals = frames.totals();
   print_bad_samples(totals, options.path);
+  warn_of_black(options, totals.black);
   for (const coordinator::FrameFailure& failure : outcome.failures) {
     print_error(core::Error{fmt::format("frame {} failed: {}", failure.frame, failure.reason)});
   }

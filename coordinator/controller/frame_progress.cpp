@@ -12,6 +12,7 @@
 #include "coordinator/meters/meters.h"
 #include "core/base/text.h"
 #include "core/base/wall_clock.h"
+#include "core/film/black.h"
 #include "farm/wire.h"
 
 namespace hyades::coordinator {
@@ -82,6 +83,13 @@ void FrameProgress::measure_noise(JobId job, int32_t frame) {
     active->noise = active->touch(frame).noise = noise;
     active->noise_measured = std::chrono::steady_clock::now();
   }
+}
+
+/// The film of a frame in work; null where the job has ended.
+std::shared_ptr<const core::Film> FrameProgress::film_of(JobId job, int32_t frame) const {
+  const StateLock lock(context_.mutex);
+  const ActiveJob* active = jobs_.find(job);
+  return active == nullptr ? nullptr : active->film_store->film(frame);
 }
 
 /// A film has been merged, since `begun_us`: what it took counts now.
@@ -174,10 +182,16 @@ void FrameProgress::finish(ActiveJob& active, const FinishFrame& finish) {
   // its last film, and comes to this when it has.
   active.film_store->call([this, finish] {
     measure_noise(finish.job, finish.frame);
+    const std::shared_ptr<const core::Film> film = film_of(finish.job, finish.frame);
+    const bool black = film != nullptr && core::is_black(*film);
     const StateLock again(context_.mutex);
     ActiveJob* still = jobs_.find(finish.job);
     if (still == nullptr) return;
-    still->complete[finish.frame] = still->film_store->film(finish.frame);
+    if (black) {
+      jobs_.note(*still, v1::LOG_LEVEL_WARNING, finish.frame, {},
+                 "is black all over: no light reaches what the camera sees");
+    }
+    still->complete[finish.frame] = film;
     hand_over(*still, finish);
   });
 }

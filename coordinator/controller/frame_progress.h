@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 
 #include "coordinator/controller/timeline.h"
 #include "coordinator/controller/worker_table.h"
@@ -45,6 +46,8 @@ class FrameProgress {
 
  private:
   void measure_noise(JobId job, int32_t frame) HYADES_EXCLUDES(state_lock);
+  std::shared_ptr<const core::Film> film_of(JobId job, int32_t frame) const
+      HYADES_EXCLUDES(state_lock);
   void count_film(ActiveJob& active, const Merge& merge, int64_t begun_us)
       HYADES_REQUIRES(state_lock);
   void hand_over(ActiveJob& active, const FinishFrame& finish) HYADES_REQUIRES(state_lock);

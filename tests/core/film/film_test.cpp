@@ -6,7 +6,9 @@
 #include <cmath>
 #include <limits>
 #include <random>
+#include <vector>
 
+#include "core/film/black.h"
 #include "tests/core/film/film_testing.h"
 
 namespace hyades::core {
@@ -81,6 +83,19 @@ TEST(Film, DigestSeesEveryDifference) {
   EXPECT_NE(render(layout, {0, 0, 4, 4}, {0, 3}).digest(), digest);
   EXPECT_NE(Film(layout, {0, 0, 4, 4}).digest(), Film(layout, {0, 0, 4, 5}).digest());
   EXPECT_NE(Film(layout, {0, 0, 4, 4}).digest(), Film(make_film_layout({}), {0, 0, 4, 4}).digest());
+}
+
+TEST(Film, IsBlackUntilLightReachesAPixel) {
+  const PixelRect pixel{2, 1, 3, 2};
+  Film film(make_film_layout({.splats = true}), pixel, {0, 0, 4, 4});
+  EXPECT_TRUE(is_black(film));
+  film.deposit(pixel, 0, 1, std::vector<float>{0, 0, 0, 1});
+  EXPECT_TRUE(is_black(film)) << "what covers a pixel is no light";
+  Film splat = film;
+  splat.deposit_splats({{5, {0, 0, 1e-6F}}});
+  EXPECT_FALSE(is_black(splat));
+  film.deposit(pixel, 1, 1, std::vector<float>{0, 1e-6F, 0, 1});
+  EXPECT_FALSE(is_black(film));
 }
 
 TEST(Film, AWrongContributionCanBeSubtracted) {
