@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "core/job/key_index.h"
 #include "core/job/read_values.h"
 #include "core/job/yaml_build.h"
 
@@ -112,8 +113,9 @@ class Joiner {
 
   bool check_keys(const YamlNode& a, const YamlNode& b, int32_t frame) {
     const auto missing = [](const YamlNode& from, const YamlNode& in) -> const YamlEntry* {
+      const KeyIndex keys(in);
       for (const YamlEntry& entry : from.map) {
-        if (in.find(entry.key) == nullptr) return &entry;
+        if (!keys.contains(entry.key)) return &entry;
       }
       return nullptr;
     };

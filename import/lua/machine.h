@@ -24,6 +24,7 @@ struct Limits {
   size_t memory = size_t{1} << 30;  ///< bytes, of everything that the script holds
   size_t text = size_t{16} << 20;   ///< bytes of one string
   double seconds = 600.0;           ///< processor time
+  double overtime = 60.0;           ///< beyond `seconds`, after which the process is ended
 };
 
 /// Lua 5.4 for scripts that nobody trusts: what it may take is bounded, no `pcall` catches that

@@ -18,6 +18,7 @@
 #include "import/lua/places.h"
 #include "import/lua/random.h"
 #include "import/lua/setting.h"
+#include "import/lua/time_guard.h"
 #include "import/lua/tree.h"
 #include "import/within_folder.h"
 
@@ -45,7 +46,13 @@ class Opening {
 
 class Run {
  public:
-  explicit Run(const ScriptRequest& request) : request_(request), machine_(request.limits) {}
+  explicit Run(const ScriptRequest& request)
+      : request_(request),
+        guard_(request.limits.seconds + request.limits.overtime,
+               printable(request.script) + ": the script takes more than " +
+                   format_duration(request.limits.seconds) +
+                   " of processor time, and can be interrupted only by ending the program"),
+        machine_(request.limits) {}
 
   Result<ScriptResult> run() {
     lua_State* const state = machine_.state();
@@ -228,6 +235,7 @@ class Run {
   Error bad_tree_;  ///< why what it returns is no tree
   size_t made_bytes_ = 0;
   std::vector<std::string> open_;  ///< included files that are running
+  TimeGuard guard_;
   Machine machine_;
 };
 
