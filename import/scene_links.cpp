@@ -22,23 +22,29 @@ bool is_inside(const fs::path& path, const fs::path& folder) {
          folder.end();
 }
 
-/// Adds the ways that `way` has with one more step, which may be a pattern; as written too.
-void add_meant(const fs::path& folder, const fs::path& way, const std::string& step,
-               std::vector<fs::path>& ways) {
+/// Adds the ways that `way` has with one more step, which may be a pattern; as written too. What a
+/// pattern costs is taken from `left`; false where that does not suffice.
+bool add_meant(const fs::path& folder, const fs::path& way, const std::string& step,
+               std::atomic<int64_t>& left, std::vector<fs::path>& ways) {
+  constexpr int64_t kCostOfMeant = 16;  // entries that could be looked at while one is followed
   ways.push_back(way / step);
   const size_t udim = step.find(kUdim);
   const size_t first = std::min(udim, step.find('#'));
-  if (first == std::string::npos) return;
+  if (first == std::string::npos) return true;
+  left -= kCostOfMeant;
   const size_t after_frame = step.rfind('#') + 1;  // 0: there is none
   const size_t after_tile = udim == std::string::npos ? 0 : step.rfind(kUdim) + kUdim.size();
   const std::string_view before = std::string_view(step).substr(0, first);
   const std::string_view after = std::string_view(step).substr(std::max(after_frame, after_tile));
   std::error_code failed;
   fs::directory_iterator entries(folder / way, failed);
-  for (; !failed && entries != fs::directory_iterator(); entries.increment(failed)) {
+  for (; !failed && entries != fs::directory_iterator() && --left > 0; entries.increment(failed)) {
     const std::string name = entries->path().filename().string();
-    if (name.starts_with(before) && name.ends_with(after)) ways.push_back(way / name);
+    if (!name.starts_with(before) || !name.ends_with(after)) continue;
+    ways.push_back(way / name);
+    left -= kCostOfMeant;
   }
+  return left > 0;
 }
 
 }  // namespace
@@ -69,14 +75,10 @@ Status SceneLinks::check(const std::string& scene, const std::string& file) cons
   for (const fs::path& step : fs::path(file)) {
     std::vector<fs::path> longer;
     for (const fs::path& way : meant) {
-      const size_t before = longer.size();
-      add_meant(fs::path(folder_), way, step.string(), longer);
-      // A name without marks means itself.
-      const auto more = static_cast<int64_t>(longer.size() - before) - 1;
-      if (more == 0 || (*left_ -= more) >= 0) continue;
-      return Error{file + ": the patterns of the scene may mean more than " +
-                   std::to_string(kMostMeant) +
-                   " files, expected fewer marks in the names of folders"};
+      if (add_meant(fs::path(folder_), way, step.string(), *left_, longer)) continue;
+      return Error{file +
+                   ": the names with marks ('####', '<UDIM>') of this scene and those before "
+                   "it may mean too many files, expected fewer of them, or folders of fewer files"};
     }
     meant = std::move(longer);
   }

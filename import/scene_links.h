@@ -19,7 +19,7 @@ class SceneLinks {
   SceneLinks() = default;
   /// `folder`: on the disk, where references begin.
   explicit SceneLinks(std::string folder)
-      : folder_(std::move(folder)), left_(std::make_shared<std::atomic<int64_t>>(kMostMeant)) {}
+      : folder_(std::move(folder)), left_(std::make_shared<std::atomic<int64_t>>(kMostEntries)) {}
 
   /// Whether `file`, as a reference that scene file `scene` names, lies in the scene's folder or
   /// below it when all links are followed. An error that names the link and says what to do. Files
@@ -30,12 +30,12 @@ class SceneLinks {
  private:
   Status check_one(const std::string& base, const std::string& file) const;
 
-  /// Files that patterns may mean, all together: links within a folder may lead back into it, over
-  /// and over.
-  static constexpr int64_t kMostMeant = int64_t{1} << 18;
+  /// Entries of folders that are looked at for patterns, all together, those that are meant counted
+  /// more often: some ten seconds. Links within a folder may lead back into it, over and over.
+  static constexpr int64_t kMostEntries = int64_t{1} << 24;
 
   std::string folder_;
-  std::shared_ptr<std::atomic<int64_t>> left_;  ///< of kMostMeant; null: links are not looked at
+  std::shared_ptr<std::atomic<int64_t>> left_;  ///< of kMostEntries; null: links are not looked at
 };
 
 }  // namespace hyades::core
