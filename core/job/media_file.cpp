@@ -4,8 +4,11 @@
 #include <array>
 #include <cstddef>
 #include <memory>
+#include <set>
 #include <string>
 #include <utility>
+
+#include "core/job/join_trees.h"
 
 namespace hyades::core {
 
@@ -33,13 +36,14 @@ std::string without_tabs(std::string_view text) {
 YamlPtr in_our_words(const YamlNode& medium, Diagnostics& diagnostics) {
   auto result = std::make_shared<YamlNode>(medium);
   result->map.clear();
+  std::set<std::string> keys;
   for (const YamlEntry& entry : medium.map) {
     if (entry.key == "name") continue;
     YamlEntry renamed = entry;
     for (const auto& [other, ours] : kOtherNames) {
       if (entry.key == other) renamed.key = ours;
     }
-    if (result->find(renamed.key) != nullptr) {
+    if (!keys.insert(renamed.key).second) {
       diagnostics.add(entry.key_where,
                       "there is another key that means " + renamed.key + ", expected one");
       continue;
@@ -50,7 +54,7 @@ YamlPtr in_our_words(const YamlNode& medium, Diagnostics& diagnostics) {
 }
 
 /// Adds a medium that carries its name; false after a complaint.
-bool add_named(const YamlNode& medium, YamlNode& media, Diagnostics& diagnostics) {
+bool add_named(const YamlNode& medium, JoinedSection& media, Diagnostics& diagnostics) {
   const YamlEntry* name = medium.find("name");
   if (name == nullptr || name->value->kind != YamlNode::Kind::scalar) {
     diagnostics.add(medium.where, "a medium is " + describe(medium) +
@@ -62,7 +66,7 @@ bool add_named(const YamlNode& medium, YamlNode& media, Diagnostics& diagnostics
     diagnostics.add(name->key_where, "there is another medium '" + name->value->scalar + "'");
     return false;
   }
-  media.map.push_back({name->value->scalar, name->value->where, in_our_words(medium, diagnostics)});
+  media.add({name->value->scalar, name->value->where, in_our_words(medium, diagnostics)});
   return true;
 }
 
@@ -72,29 +76,30 @@ YamlPtr read_media_file(std::string_view text, const std::string& file, Diagnost
   YamlPtr root = parse_yaml(is_json(text) ? without_tabs(text) : text, file, diagnostics);
   if (root == nullptr) return nullptr;
   if (const YamlEntry* section = root->find("media")) root = section->value;
-  auto media = std::make_shared<YamlNode>();
-  media->kind = YamlNode::Kind::map;
-  media->where = root->where;
-  media->weight = root->weight;
+  YamlNode none;
+  none.kind = YamlNode::Kind::map;
+  none.where = root->where;
+  none.weight = root->weight;
+  JoinedSection media(none);
   bool good = true;
   if (root->kind == YamlNode::Kind::list) {
-    for (const YamlPtr& medium : root->list) good &= add_named(*medium, *media, diagnostics);
+    for (const YamlPtr& medium : root->list) good &= add_named(*medium, media, diagnostics);
   } else if (root->find("name") != nullptr) {
-    good = add_named(*root, *media, diagnostics);
+    good = add_named(*root, media, diagnostics);
   } else if (root->kind == YamlNode::Kind::map) {
     for (const YamlEntry& entry : root->map) {
       YamlEntry renamed = entry;
       if (entry.value->kind == YamlNode::Kind::map) {
         renamed.value = in_our_words(*entry.value, diagnostics);
       }
-      media->map.push_back(std::move(renamed));
+      media.add(renamed);
     }
   } else {
     diagnostics.add(root->where, "the file of media holds " + describe(*root) +
                                      ", expected a medium or a list of them");
     return nullptr;
   }
-  return good ? media : nullptr;
+  return good ? media.map() : nullptr;
 }
 
 }  // namespace hyades::core

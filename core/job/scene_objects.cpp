@@ -10,6 +10,7 @@
 
 #include "core/base/text.h"
 #include "core/job/join_trees.h"
+#include "core/job/key_index.h"
 #include "core/job/output_path.h"
 #include "core/job/read_values.h"
 
@@ -244,12 +245,14 @@ class Expander {
                                const std::string& path) {
     const YamlEntry* materials = document.find("materials");
     if (materials == nullptr) return;
+    std::optional<KeyIndex> names;
     for (YamlEntry& entry : object.map) {
       if (entry.key != "override" || entry.value->kind != Kind::map) continue;
+      if (!names) names.emplace(*materials->value);
       auto renamed = std::make_shared<YamlNode>(*entry.value);
       for (YamlEntry& row : renamed->map) {
         const std::string full = path + "." + row.key;
-        if (materials->value->find(full) != nullptr) row.key = full;
+        if (names->contains(full)) row.key = full;
       }
       entry.value = renamed;
     }

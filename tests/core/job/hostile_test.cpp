@@ -203,6 +203,24 @@ TEST(HostileJob, IncludesCostWhatTheyHold) {
   EXPECT_LT(seconds_with(250), 4.0 * seconds_with(1));
 }
 
+TEST(HostileJob, ManyMediaInAFileAndManyKeysInOne) {
+  MemoryAssets assets;
+  std::string list;
+  std::string keys = "broth:\n";
+  for (int i = 0; i < 200'000; ++i) {
+    list += "- {name: m" + std::to_string(i) + ", absorption: 1}\n";
+    keys += "  k" + std::to_string(i) + ": 1\n";
+  }
+  assets.add("list.yaml", list);
+  assets.add("keys.yaml", keys);
+  const HostileReading good = read_hostile("hyades: 1\nmedia: {file: list.yaml}\n", assets);
+  EXPECT_EQ(good.first(), "");
+  EXPECT_LT(good.seconds, kPatience);
+  const HostileReading bad = read_hostile("hyades: 1\nmedia: {file: keys.yaml}\n", assets);
+  EXPECT_THAT(bad.first(), HasSubstr("unknown key 'k0'"));
+  EXPECT_LT(bad.seconds, kPatience);
+}
+
 TEST(HostileJob, LikeBomb) {
   // Each entry copies the one before it and adds a key: quadratically many keys.
   std::string text = "hyades: 1\nmaterials:\n  m0: {type: lambert}\n";
