@@ -34,8 +34,6 @@ struct Inside {
 
 /// Splits "robot.glb.files/meshes/body.ply"; nothing where no folder on the way is a scene's.
 std::optional<Inside> inside_of(const std::string& reference) {
-  const auto script = document_of(reference);
-  if (script && is_script_file(script->scene)) return Inside{script->scene, {}};
   const std::string mark = std::string(kMadeFolder) + "/";
   for (size_t at = reference.find(mark); at != std::string::npos;
        at = reference.find(mark, at + 1)) {
@@ -119,7 +117,7 @@ struct ImportingResolver::State {
   Sources lenient;
   mutable std::mutex mutex;
   // Guarded by mutex.
-  std::map<std::string, Bytes> added;
+  std::map<std::string, Bytes> added;  ///< and documents that were made
   std::map<std::string, SourcePtr> sources;
 
   State(AssetResolver& below, MissingTextures missing, SceneLinks links)
@@ -159,18 +157,28 @@ struct ImportingResolver::State {
                         : write_yaml(*told->sections));
   }
 
-  /// Whether a file of a scene's folder is to be made: not where no such scene is.
-  bool makes(const Inside& inside) {
-    return files.exists(inside.scene) || !files.exists(inside.scene + std::string(kMadeFolder));
+  std::optional<Bytes> find_added(const std::string& reference) const {
+    const std::lock_guard lock(mutex);
+    const auto found = added.find(reference);
+    if (found == added.end()) return std::nullopt;
+    return found->second;
+  }
+
+  /// Whether what is in a scene's folder is to be made: not where no such scene is.
+  bool makes(const std::string& scene) {
+    return files.exists(scene) || !files.exists(scene + std::string(kMadeFolder));
+  }
+
+  /// Whether nothing on the disk has the name of what is made of `scene`, or of `reference` itself.
+  Status is_free(const std::string& scene, const std::string& reference) {
+    const std::string folder = scene + std::string(kMadeFolder);
+    if (!files.exists(folder) && !files.exists(reference)) return {};
+    return Error{folder + ": there is a folder of this name; it stands for what is made of " +
+                 scene + ". Give the folder another name"};
   }
 
   Result<Bytes> made(const Inside& inside, const std::string& reference) {
-    if (files.exists(inside.scene + std::string(kMadeFolder)) || files.exists(reference)) {
-      return Error{inside.scene + std::string(kMadeFolder) + ": there is a folder of this name; " +
-                   "it stands for what is made of " + inside.scene +
-                   ". Give the folder another name"};
-    }
-    if (const auto wanted = document_of(reference)) return document(*wanted);
+    if (auto free = is_free(inside.scene, reference); !free) return free.error();
     const auto scene = source(inside.scene);
     if (!scene) return scene.error();
     return (*scene)->made_file(inside.name);
@@ -185,24 +193,30 @@ ImportingResolver::~ImportingResolver() = default;
 
 Result<Bytes> ImportingResolver::open(const std::string& reference, const std::string& from) {
   const std::string resolved = resolve_reference(reference, from);
-  {
-    const std::lock_guard lock(state_->mutex);
-    const auto found = state_->added.find(resolved);
-    if (found != state_->added.end()) return found->second;
-  }
+  if (auto added = state_->find_added(resolved)) return *added;
   const auto inside = inside_of(resolved);
-  if (inside && state_->makes(*inside)) return state_->made(*inside, resolved);
+  if (inside && state_->makes(inside->scene)) return state_->made(*inside, resolved);
   return state_->lenient.open_anywhere(reference, from);
+}
+
+Result<Bytes> ImportingResolver::open_document(const std::string& reference,
+                                               const std::string& from) {
+  const std::string resolved = resolve_reference(reference, from);
+  const auto wanted = document_of(resolved);
+  if (!wanted || !state_->makes(wanted->scene)) return open(reference, from);
+  if (auto added = state_->find_added(resolved)) return *added;
+  if (auto free = state_->is_free(wanted->scene, resolved); !free) return free.error();
+  auto document = state_->document(*wanted);
+  if (!document) return document;
+  const std::lock_guard lock(state_->mutex);
+  return state_->added.emplace(resolved, *document).first->second;
 }
 
 bool ImportingResolver::exists(const std::string& reference) {
   const std::string resolved = resolve_reference(reference);
-  {
-    const std::lock_guard lock(state_->mutex);
-    if (state_->added.contains(resolved)) return true;
-  }
+  if (state_->find_added(resolved)) return true;
   const auto inside = inside_of(resolved);
-  if (inside && state_->makes(*inside)) return state_->made(*inside, resolved).ok();
+  if (inside && state_->makes(inside->scene)) return state_->made(*inside, resolved).ok();
   return state_->files.exists(reference);
 }
 
@@ -216,12 +230,10 @@ Status ImportingResolver::may_name(const std::string& scene, const std::string& 
 }
 
 bool ImportingResolver::is_on_disk(const std::string& reference) const {
-  {
-    const std::lock_guard lock(state_->mutex);
-    if (state_->added.contains(resolve_reference(reference))) return false;
-  }
-  const auto inside = inside_of(resolve_reference(reference));
-  return !(inside && state_->makes(*inside)) && state_->files.exists(reference);
+  const std::string resolved = resolve_reference(reference);
+  if (state_->find_added(resolved)) return false;
+  const auto inside = inside_of(resolved);
+  return !(inside && state_->makes(inside->scene)) && state_->files.exists(reference);
 }
 
 void ImportingResolver::add(const std::string& reference, std::string text) {

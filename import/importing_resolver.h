@@ -17,10 +17,10 @@ enum class MissingTextures {
 };
 
 /// A resolver that also has, beside every scene file F of `files` (is_scene_file()), the folder
-/// F.files: the scene as a document of the job language (core/job/scene_document.h) and the meshes
-/// and pictures that the document names. They are made when they are opened; each scene is read
-/// once. A folder of that name on the disk, beside the scene, would be taken for what is made:
-/// opening anything in it is an error that says so. Thread-safe.
+/// F.files: the scene as a document of the job language (core/job/scene_document.h), made by
+/// open_document(), and the meshes and pictures that the document names, made when they are opened.
+/// Each scene is read once. A folder of that name on the disk, beside the scene, would be taken for
+/// what is made: opening anything in it is an error that says so. Thread-safe.
 class ImportingResolver : public AssetResolver {
  public:
   explicit ImportingResolver(AssetResolver& files,
@@ -29,6 +29,7 @@ class ImportingResolver : public AssetResolver {
   ~ImportingResolver() override;
 
   Result<Bytes> open(const std::string& reference, const std::string& from = {}) override;
+  Result<Bytes> open_document(const std::string& reference, const std::string& from = {}) override;
   bool exists(const std::string& reference) override;
 
   /// Files of the scene's folder and below, by links too.

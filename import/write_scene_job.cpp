@@ -70,22 +70,22 @@ class Writer {
     if (auto free = check_free(request_.job); !free) return free.error();
     // Paths lead through it.
     if (auto made = make_folder(folder_); !made) return made.error();
-    if (auto good = check_script(); !good) return good.error();
     auto job = read();
     if (!job) return job.error();
     written_.notes = std::move(job->notes);
     source_ = job->source;
     find_frames(*job->tree);
-    const YamlPtr tree = changed(job->tree, [&](const YamlPtr& map) { return mesh_as_ply(map); });
-    if (status_) find_made(*tree);
+    find_made(*job->tree);
     if (wanted_.size() > kMostMadeFiles) {
-      status_ = Error{request_.scene + ": it names more than " + std::to_string(kMostMadeFiles) +
-                      " files that are made of it"};
+      return Error{request_.scene + ": it names more than " + std::to_string(kMostMadeFiles) +
+                   " files that are made of it"};
     }
-    if (!status_) return status_.error();
     for (const auto& [name, in_scene] : wanted_) {
       if (auto done = copy(name, in_scene); !done) return done.error();
     }
+    if (auto good = check_script(*job->tree); !good) return good.error();
+    const YamlPtr tree = changed(job->tree, [&](const YamlPtr& map) { return mesh_as_ply(map); });
+    if (!status_) return status_.error();
     const std::string text = heading(job->added) + write_yaml(*tree);
     if (auto good = check(text); !good) return good.error();
     if (auto done = save(request_.job, text); !done) return done.error();
@@ -115,18 +115,16 @@ class Writer {
 
   /// What a script says is its word, which goes for files of its folder only. That of the job which
   /// is written goes for all files.
-  Status check_script() const {
+  Status check_script(const YamlNode& tree) {
     if (!is_script_file(request_.scene)) return {};
-    JobFileOptions how;
-    how.missing = request_.missing;
-    how.follow_links = request_.follow_links;
-    how.set = request_.set;
-    const auto script = JobFiles::open(request_.scene, how);
-    if (!script) return script.error();
-    const auto text = (*script)->files().open((*script)->document());
-    if (!text) return text.error();
+    SceneDocument document;
+    document.scene = std::filesystem::path(request_.scene).filename().string();
+    document.fps = 0.0F;
+    importing_.add(reference_of(document), write_yaml_of_script(tree, document.scene));
     Diagnostics diagnostics;
-    (void)parse_job({text->chars(), text->size()}, request_.scene, (*script)->files(), diagnostics);
+    const YamlPtr job =
+        YamlMap{{"hyades", yaml_word("1")}, {"include", yaml_word(document.scene)}}.node();
+    (void)parse_job(write_yaml(*job), request_.scene, importing_, diagnostics);
     return refuse_what_would_not_render(diagnostics);
   }
 

@@ -116,9 +116,16 @@ RecordingResolver::RecordingResolver(AssetResolver& inner)
 RecordingResolver::~RecordingResolver() = default;
 
 Result<Bytes> RecordingResolver::open(const std::string& reference, const std::string& from) {
-  Result<Bytes> bytes = state_->inner.open(reference, from);
+  return record(resolve_reference(reference, from), state_->inner.open(reference, from));
+}
+
+Result<Bytes> RecordingResolver::open_document(const std::string& reference,
+                                               const std::string& from) {
+  return record(resolve_reference(reference, from), state_->inner.open_document(reference, from));
+}
+
+Result<Bytes> RecordingResolver::record(const std::string& resolved, Result<Bytes> bytes) {
   if (!bytes) return bytes;
-  const std::string resolved = resolve_reference(reference, from);
   {
     const std::lock_guard lock(state_->mutex);
     if (!state_->seen.insert(resolved).second) return bytes;

@@ -21,6 +21,13 @@ class AssetResolver {
   /// Errors name the reference and what was wrong with it.
   virtual Result<Bytes> open(const std::string& reference, const std::string& from = {}) = 0;
 
+  /// What `include` and objects bring of a scene or script: importers make such documents when they
+  /// are opened so, and by no other name that a job or scene has for a file. open() gives those
+  /// that were opened here before.
+  virtual Result<Bytes> open_document(const std::string& reference, const std::string& from = {}) {
+    return open(reference, from);
+  }
+
   /// Whether there is such an asset (which may fail to open all the same). Nobody counts that as
   /// opening it.
   virtual bool exists(const std::string& reference) { return open(reference).ok(); }
@@ -58,11 +65,14 @@ class RecordingResolver : public AssetResolver {
   explicit RecordingResolver(AssetResolver& inner);
   ~RecordingResolver() override;
   Result<Bytes> open(const std::string& reference, const std::string& from = {}) override;
+  Result<Bytes> open_document(const std::string& reference, const std::string& from = {}) override;
   bool exists(const std::string& reference) override;
   Status may_name(const std::string& scene, const std::string& file) override;
   std::vector<AssetRecord> records() const;
 
  private:
+  Result<Bytes> record(const std::string& resolved, Result<Bytes> bytes);
+
   struct State;
   std::unique_ptr<State> state_;
 };

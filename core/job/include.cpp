@@ -39,15 +39,7 @@ class Loader {
     if (own == nullptr) return own;
     values_ += own->weight;
     if (own->kind != YamlNode::Kind::map) return own;
-    // What parts of a script say is said by the script, whose folder its files are named from.
-    std::set<std::string> places = MadeLines(text, shown).other_files();
-    if (!open_.empty()) {
-      for (const std::string& part : places) tree.origins.included[part] = reference;
-    }
-    places.insert(shown);
-    if (!script.empty()) {
-      for (const std::string& place : places) tree.origins.scripts[place] = script;
-    }
+    note_word(text, reference, shown, script);
     if (open_.empty()) {
       fps_ = fps_of(*own);
       says_fps_ = frames_key(*own, "fps") != nullptr;
@@ -89,6 +81,19 @@ class Loader {
   JobTree tree;
 
  private:
+  /// Notes by whose word `text` is read, which is file `reference`. What parts of a script say is
+  /// said by the script, whose folder its files are named from.
+  void note_word(std::string_view text, const std::string& reference, const std::string& shown,
+                 const std::string& script) {
+    std::set<std::string> places = MadeLines(text, shown).other_files();
+    if (!open_.empty()) {
+      for (const std::string& part : places) tree.origins.included[part] = reference;
+    }
+    places.insert(shown);
+    if (script.empty()) return;
+    for (const std::string& place : places) tree.origins.scripts[place] = script;
+  }
+
   /// Everything that the value of one `include:` brings, in order.
   YamlPtr included_by(const YamlNode& value, const std::string& from) {
     JoinedFiles all(empty_map());
@@ -102,6 +107,8 @@ class Loader {
     }
     return all.map();
   }
+
+  using Opening = Result<Bytes> (AssetResolver::*)(const std::string&, const std::string&);
 
   struct Opened {
     std::string reference;
@@ -119,12 +126,12 @@ class Loader {
                        what + " is " + describe(name) + ", expected a file name or a list of them");
       return std::nullopt;
     }
-    return open_file(name.scalar, name, from, what);
+    return open_file(&AssetResolver::open, name.scalar, name, from, what);
   }
 
   /// Opens the file `wanted`, relative to `from`, that `name` means. Nothing where it was read
   /// already, or after a complaint.
-  std::optional<Opened> open_file(const std::string& wanted, const YamlNode& name,
+  std::optional<Opened> open_file(Opening opening, const std::string& wanted, const YamlNode& name,
                                   const std::string& from, const std::string& what) {
     const std::string reference = resolve_reference(wanted, from);
     if (std::find(open_.begin(), open_.end(), reference) != open_.end()) {
@@ -154,7 +161,7 @@ class Loader {
     } else if (is_script_file(named)) {
       script = named;
     }
-    auto bytes = assets_.open(wanted, from);
+    auto bytes = (assets_.*opening)(wanted, from);
     if (!bytes) {
       diagnostics_.add(name.where, what + ": " + bytes.error().message);
       return std::nullopt;
@@ -224,7 +231,8 @@ class Loader {
   /// The document of a scene of another tool, which lies beside the scene.
   YamlPtr load_scene(const SceneDocument& scene, const YamlNode& name, const std::string& from,
                      const std::string& what) {
-    const auto file = open_file(reference_of(scene), name, from, what);
+    const auto file =
+        open_file(&AssetResolver::open_document, reference_of(scene), name, from, what);
     return file ? load_opened(*file) : nullptr;
   }
 
@@ -252,18 +260,21 @@ class Loader {
     std::erase_if(others.map, [](const YamlEntry& entry) { return entry.key == "file"; });
     JoinedSection all(others);
     const auto add = [&](const YamlNode& name) {
-      if (is_scene_file(name.scalar) || document_of(name.scalar)) {
+      const std::string meant = resolve_reference(name.scalar, reference);
+      if (is_scene_file(meant) || document_of(meant)) {
         diagnostics_.add(name.where, "file of media is " + describe(name) +
                                          ", expected a file of media (.json, .yaml)");
         return;
       }
       const auto file = open_named(name, reference, "file of media");
       if (!file) return;
-      bytes_ += file->bytes.size();
-      if (!file->script.empty()) tree.origins.scripts[file->shown] = file->script;
-      const YamlPtr section =
-          read_media_file({file->bytes.chars(), file->bytes.size()}, file->shown, diagnostics_);
-      if (section != nullptr) all.add(*section, false, diagnostics_);
+      const std::string_view text(file->bytes.chars(), file->bytes.size());
+      bytes_ += text.size();
+      note_word(text, file->reference, file->shown, file->script);
+      const YamlPtr section = read_media_file(text, file->shown, diagnostics_);
+      if (section == nullptr) return;
+      values_ += section->weight;
+      all.add(*section, false, diagnostics_);
     };
     if (files->value->kind == YamlNode::Kind::list) {
       for (const YamlPtr& name : files->value->list) add(*name);

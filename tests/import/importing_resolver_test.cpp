@@ -44,20 +44,30 @@ class Importing : public testing::Test {
     return bytes ? std::string(bytes->chars(), bytes->size()) : "ERROR " + bytes.error().message;
   }
 
+  static std::string document_of(AssetResolver& files, const std::string& reference) {
+    const auto bytes = files.open_document(reference);
+    return bytes ? std::string(bytes->chars(), bytes->size()) : "ERROR " + bytes.error().message;
+  }
+
   test::TempFolder folder_;
 };
 
 TEST_F(Importing, ASceneIsADocumentInAFolderBesideIt) {
   const auto disk = make_file_resolver(folder_.path().string());
   ImportingResolver files(*disk);
-  const std::string text = text_of(files, reference_of({"quads.obj", "q", 24.0F, ""}));
+  const std::string name = reference_of({"quads.obj", "q", 24.0F, ""});
+  // A picture of that name makes none.
+  EXPECT_THAT(text_of(files, name), HasSubstr("ERROR quads.obj: 'scene,prefix=q,fps=24.yaml'"));
+  EXPECT_FALSE(files.exists(name));
+  const std::string text = document_of(files, name);
+  EXPECT_EQ(text_of(files, name), text) << "now it is there";
   EXPECT_THAT(
       text, HasSubstr("q.red paint: {mesh: ../quads.obj, part: red paint, material: q.red paint}"))
       << text;
   EXPECT_THAT(text, HasSubstr("file: ../pic/wood.png"));
-  EXPECT_TRUE(files.exists("quads.obj.files/scene.yaml"));
+  EXPECT_TRUE(files.exists(name));
   EXPECT_FALSE(files.exists("gone.obj.files/scene.yaml"));
-  EXPECT_THAT(text_of(files, "gone.obj.files/scene.yaml"),
+  EXPECT_THAT(document_of(files, "gone.obj.files/scene.yaml"),
               HasSubstr("ERROR gone.obj: no such file"));
   EXPECT_THAT(text_of(files, "quads.obj.files/meshes/x.ply"),
               HasSubstr("ERROR quads.obj: 'meshes/x.ply'"));

@@ -164,13 +164,54 @@ TEST(LuaSandbox, FilesOfMediaAreNoScenes) {
   files.add("in/m.lua", "error('it ran')");
   files.add("in/s.lua", "return {media = {file = 'm.lua'}}");
   files.add("in/d.lua", "return {media = {file = 'm.lua,fps=24.yaml'}}");
+  files.add("in/detour.lua", "return {media = {file = 'm.lua,prefix=a/%/../b.yaml'}}");
   for (const char* job : {"include: in/s.lua\n", "include: in/d.lua\n", "media: {file: in/m.lua}\n",
-                          "media: {file: in/m.gltf}\n"}) {
+                          "include: in/detour.lua\n", "media: {file: in/m.gltf}\n"}) {
     EXPECT_THAT(job_complaints(job, files),
                 AllOf(HasSubstr("file of media"), HasSubstr("expected a file of media"),
                       Not(HasSubstr("it ran"))))
         << job;
   }
+}
+
+/// Only what is included, once for each time: a picture of that name is none.
+TEST(LuaSandbox, NamesOfPicturesRunNothing) {
+  MemoryAssets files;
+  files.add("in/s.lua", "error('it ran')");
+  files.add("in/t.lua",
+            "return {textures = {t = {type = 'image', file = 's.lua,fps=0,set.a=1.yaml'}}}");
+  for (const char* job : {"textures: {t: {type: image, file: 'in/s.lua,fps=0,set.a=1.yaml'}}\n",
+                          "include: in/t.lua\n", "include: 'in/s.lua,fps=0.yaml'\n"}) {
+    EXPECT_THAT(job_complaints(job, files),
+                AllOf(HasSubstr("no such file"), Not(HasSubstr("it ran"))))
+        << job;
+  }
+}
+
+/// Keys that are spread out in a table of 2^17, and all collide in one of twice the size: filling
+/// that takes a minute within one instruction.
+TEST(LuaSandbox, WhatNothingInterruptsEndsTheProgram) {
+  lua::Limits limits;
+  limits.seconds = 0.1;
+  limits.overtime = 0.2;
+  EXPECT_EXIT((void)run_lua("local n, t = 1 << 17, {} local m = 2 * n - 1 "
+                            "for i = 1, n + 1 do t[i * m] = true end return {}",
+                            {}, limits),
+              testing::ExitedWithCode(2),
+              "a/scene.lua: the script takes more than 0.10 s of processor time");
+}
+
+TEST(LuaSandbox, WhatFilesOfMediaHoldCounts) {
+  MemoryAssets files;
+  std::string names;
+  for (const std::string name : {"a", "b", "c", "d"}) {
+    std::string many = name + ": {absorption: [";
+    for (int i = 0; i < 900'000; ++i) many += "1,";
+    files.add(name + ".yaml", many + "]}\n");
+    names += name + ".yaml, ";
+  }
+  EXPECT_THAT(job_complaints("media: {file: [" + names + "]}\n", files),
+              HasSubstr("the included files have more than 2097152 values in all"));
 }
 
 /// What a script makes is kept until the job is read.

@@ -217,7 +217,7 @@ TEST(LuaFrames, AJobsFramesCount) {
   ASSERT_EQ(job.includes.size(), 1U);
   EXPECT_EQ(job.includes[0], "s.lua,fps=4,frames=10-12.yaml");
   ImportingResolver importing(files);
-  const auto made = importing.open(job.includes[0]);
+  const auto made = importing.open_document(job.includes[0]);
   ASSERT_TRUE(made) << made.error().message;
   EXPECT_THAT(std::string(made->chars(), made->size()),
               HasSubstr("radius: {keys: {10: 3.25, 11: 3.5, 12: 3.75, 13: 4}, ease: linear}"));
