@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <string>
@@ -37,6 +38,9 @@ class AssetResolver {
   /// have sent has none to guard.
   virtual Status may_name(const std::string& scene, const std::string& file);
 };
+
+/// Bytes of the longest name of a file that any system opens.
+inline constexpr size_t kLongestFileName = 4096;
 
 /// What `reference` means when asset `from` names it: a path relative to the job's folder (or an
 /// absolute one), "." and ".." folded away. The names of AssetRecord, and what to pass as `from`

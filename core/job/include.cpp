@@ -133,6 +133,7 @@ class Loader {
   /// already, or after a complaint.
   std::optional<Opened> open_file(Opening opening, const std::string& wanted, const YamlNode& name,
                                   const std::string& from, const std::string& what) {
+    if (!check_file_name(wanted, name, what)) return std::nullopt;
     const std::string reference = resolve_reference(wanted, from);
     if (std::find(open_.begin(), open_.end(), reference) != open_.end()) {
       diagnostics_.add(name.where, "'" + name.scalar + "' includes itself in the end");
@@ -154,7 +155,10 @@ class Loader {
     const std::string named = scene ? scene->scene : reference;
     std::string script = tree.origins.script_at(name.where);
     if (!script.empty()) {
-      if (const auto may = assets_.may_name(script, named); !may) {
+      // Both: where there is no such scene, a file may have the name of its document.
+      for (const std::string& file : {named, reference}) {
+        const auto may = assets_.may_name(script, file);
+        if (may) continue;
         diagnostics_.add(name.where, what + ": " + may.error().message);
         return std::nullopt;
       }
@@ -176,6 +180,14 @@ class Loader {
     tree.includes.push_back(reference);
     tree.origins.included[shown] = reference;
     return Opened{reference, shown, std::move(script), std::move(*bytes)};
+  }
+
+  bool check_file_name(const std::string& file, const YamlNode& name, const std::string& what) {
+    if (file.size() <= kLongestFileName) return true;
+    diagnostics_.add(name.where, what + " is a name of " + std::to_string(file.size()) +
+                                     " bytes, expected at most " +
+                                     std::to_string(kLongestFileName));
+    return false;
   }
 
   void complain_too_much(const YamlPlace& where) {
@@ -260,6 +272,7 @@ class Loader {
     std::erase_if(others.map, [](const YamlEntry& entry) { return entry.key == "file"; });
     JoinedSection all(others);
     const auto add = [&](const YamlNode& name) {
+      if (!check_file_name(name.scalar, name, "file of media")) return;
       const std::string meant = resolve_reference(name.scalar, reference);
       if (is_scene_file(meant) || document_of(meant)) {
         diagnostics_.add(name.where, "file of media is " + describe(name) +

@@ -87,6 +87,9 @@ const YamlNode* MapReader::find(std::string_view key, std::string_view hint) {
     complain(entry->key_where, fmt::format("{} is empty, expected a value{}", key, hint));
     return nullptr;
   }
+  // Aliases and `like` read a text again and again, and each time it is copied.
+  const uint64_t more = weight_of_text(entry->value->scalar.size()) - 1;
+  if (more > 0 && !context_.spend(more, entry->value->where)) return nullptr;
   return entry->value.get();
 }
 
@@ -208,6 +211,10 @@ void MapReader::file(std::string_view key, std::string& target) {
   if (listing()) tell(key, {.takes = "file"});
   if (name.empty()) return;
   const SourceLocation where = where_of(key);
+  if (name.size() > kLongestFileName) {
+    return complain(where, fmt::format("{} is a name of {} bytes, expected at most {}", key,
+                                       name.size(), kLongestFileName));
+  }
   target = context_.job_relative(name, where);
   context_.files.push_back({target, where, fmt::format("{} of {}", key, what_), false,
                             context_.origins.script_at(where)});

@@ -65,6 +65,7 @@ class TreeBuilder : public YAML::EventHandler {
     node->quoted = tag == "!";
     node->where = at(mark);
     node->scalar = value;
+    node->weight = weight_of_text(value.size());
     deliver(std::move(node), anchor);
   }
 
@@ -132,7 +133,7 @@ class TreeBuilder : public YAML::EventHandler {
   }
 
   void deliver(std::shared_ptr<YamlNode> node, YAML::anchor_t anchor) {
-    nodes_ += 1;
+    nodes_ += node->weight;
     if (nodes_ > kMaxYamlNodes) {
       throw Refusal{node->where, "more than " + std::to_string(kMaxYamlNodes) + " values"};
     }

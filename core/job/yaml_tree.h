@@ -40,7 +40,8 @@ struct YamlNode {
   std::string scalar;   ///< scalar only
   std::vector<YamlPtr> list;
   std::vector<YamlEntry> map;  ///< in document order, keys distinct
-  uint64_t weight = 1;         ///< nodes below and including this one, aliases counted in full
+  /// Nodes below and including this one, aliases counted in full; long texts count as several.
+  uint64_t weight = 1;
 
   const YamlEntry* find(std::string_view key) const;
 };
@@ -50,6 +51,9 @@ inline constexpr size_t kMaxYamlBytes = size_t{32} << 20;
 inline constexpr uint64_t kMaxYamlNodes = uint64_t{1} << 20;  ///< aliases counted in full
 inline constexpr int kMaxYamlDepth = 64;
 inline constexpr size_t kMaxYamlScalar = size_t{64} << 10;
+
+/// How many values a text of so many bytes counts as: it is copied where it is used.
+constexpr uint64_t weight_of_text(size_t bytes) { return 1 + bytes / 32; }
 
 /// Parses one YAML document. Complains (and returns null) about: syntax, text that is not UTF-8,
 /// control characters, keys that are not plain text, tags, several documents, `<<`, an alias inside

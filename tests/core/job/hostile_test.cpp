@@ -1,6 +1,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstdint>
 #include <cstdlib>
 #include <cstring>
@@ -67,6 +68,31 @@ TEST(HostileJob, AliasBomb) {
             std::string::npos)
       << reading.first();
   EXPECT_LT(reading.seconds, kPatience);
+}
+
+/// They are copied wherever they are used.
+TEST(HostileJob, LongTextsOfManyPlaces) {
+  std::string aliases =
+      "hyades: 1\ntextures:\n  a: {type: checker, a: &long " + std::string(60'000, 'x') + "}\n";
+  std::string likes =
+      "hyades: 1\nobjects:\n  base: {shape: sphere, material: " + std::string(60'000, 'x') + "}\n";
+  for (int i = 0; i < 4000; ++i) {
+    aliases += "  t" + std::to_string(i) + ": {type: image, file: *long}\n";
+    likes += "  o" + std::to_string(i) + ": {like: base}\n";
+  }
+  EXPECT_THAT(read_hostile(aliases).first(),
+              HasSubstr("more than 1048576 values (aliases counted in full)"));
+  const std::string said = read_hostile(likes).diagnostics.to_string();
+  EXPECT_THAT(said, HasSubstr("the job unfolds to more than 4194304 values"));
+  std::string deep = "x";
+  while (deep.size() < 5000) deep += "/a";
+  for (const std::string head :
+       {"textures: {t: {type: image, file: ", "include: ", "media: {file: "}) {
+    const std::string end(std::count(head.begin(), head.end(), '{'), '}');
+    EXPECT_THAT(read_hostile("hyades: 1\n" + head + deep + end + "\n").first(),
+                HasSubstr("is a name of 5001 bytes, expected at most 4096"))
+        << head;
+  }
 }
 
 /// Each takes kilobytes, so that a million of them would take all memory of a coordinator.
@@ -160,7 +186,7 @@ std::vector<std::string> texts_of_one_hash(size_t count) {
 
 /// A table of hashes is a list where somebody chose the keys so.
 TEST(HostileJob, ManyKeysOfOneHash) {
-  const std::vector<std::string> keys = texts_of_one_hash(150'000);
+  const std::vector<std::string> keys = texts_of_one_hash(100'000);
   ASSERT_EQ(std::hash<std::string>()(keys.front()), std::hash<std::string>()(keys.back()));
   std::string text = "hyades: 1\nmaterials:\n";
   for (const std::string& key : keys) text += "  " + key + ": {like: " + keys.front() + "}\n";
