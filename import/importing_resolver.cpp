@@ -58,7 +58,7 @@ class ImportingResolver::Sources : public AssetResolver {
 
   Result<Bytes> open(const std::string& reference, const std::string& from) override {
     if (is_scene_file(from)) {
-      const auto inside = links_.check(from, resolve_reference(reference, from));
+      const auto inside = check(from, resolve_reference(reference, from));
       if (!inside) return inside.error();
     }
     return open_anywhere(reference, from);
@@ -80,6 +80,13 @@ class ImportingResolver::Sources : public AssetResolver {
 
   /// `file`: as resolve_reference() gives it.
   Status check(const std::string& scene, const std::string& file) const {
+    // What is made of another scene is read of that.
+    const std::string mark = std::string(kMadeFolder) + "/";
+    for (size_t at = file.find(mark); at != std::string::npos; at = file.find(mark, at + 1)) {
+      const std::string other = file.substr(0, at);
+      if (!is_scene_file(other)) continue;
+      if (auto inside = links_.check(scene, other); !inside) return inside;
+    }
     return links_.check(scene, file);
   }
 

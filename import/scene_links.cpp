@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cstddef>
 #include <filesystem>
+#include <functional>
+#include <optional>
 #include <string_view>
 #include <system_error>
 #include <utility>
@@ -22,30 +24,86 @@ bool is_inside(const fs::path& path, const fs::path& folder) {
          folder.end();
 }
 
-/// Adds the ways that `way` has with one more step, which may be a pattern; as written too. What a
-/// pattern costs is taken from `left`; false where that does not suffice.
-bool add_meant(const fs::path& folder, const fs::path& way, const std::string& step,
-               std::atomic<int64_t>& left, std::vector<fs::path>& ways) {
-  constexpr int64_t kCostOfMeant = 16;  // entries that could be looked at while one is followed
-  ways.push_back(way / step);
+/// What a pattern is looked for by: the name before its first mark and after its last.
+struct Marked {
+  std::string before;
+  std::string after;
+};
+
+std::optional<Marked> marked(const std::string& step) {
   const size_t udim = step.find(kUdim);
   const size_t first = std::min(udim, step.find('#'));
-  if (first == std::string::npos) return true;
-  left -= kCostOfMeant;
+  if (first == std::string::npos) return std::nullopt;
   const size_t after_frame = step.rfind('#') + 1;  // 0: there is none
   const size_t after_tile = udim == std::string::npos ? 0 : step.rfind(kUdim) + kUdim.size();
-  const std::string_view before = std::string_view(step).substr(0, first);
-  const std::string_view after = std::string_view(step).substr(std::max(after_frame, after_tile));
-  std::error_code failed;
-  fs::directory_iterator entries(folder / way, failed);
-  for (; !failed && entries != fs::directory_iterator() && --left > 0; entries.increment(failed)) {
-    const std::string name = entries->path().filename().string();
-    if (!name.starts_with(before) || !name.ends_with(after)) continue;
-    ways.push_back(way / name);
-    left -= kCostOfMeant;
-  }
-  return left > 0;
+  return Marked{step.substr(0, first), step.substr(std::max(after_frame, after_tile))};
 }
+
+/// What it costs to follow the links of a path, in entries of a folder that could be looked at
+/// meanwhile: each step is looked up from the first on.
+int64_t cost_of(const std::string& path) {
+  const int64_t steps = 1 + std::count(path.begin(), path.end(), '/');
+  return steps * steps / 16;
+}
+
+/// All that a name may mean, one after the other: links within a folder may lead back into it, over
+/// and over, so that there may be any number.
+class Meant {
+ public:
+  using Visit = std::function<Status(const std::string&)>;
+
+  Meant(fs::path folder, const std::string& file, std::atomic<int64_t>& left, Visit visit)
+      : folder_(std::move(folder)), file_(file), left_(left), visit_(std::move(visit)) {
+    for (const fs::path& step : fs::path(file)) steps_.push_back(step.string());
+  }
+
+  Status all() { return follow({}, 0); }
+
+ private:
+  Status follow(const std::string& way, size_t i) {
+    if (way.size() > kLongestFileName) return {};  // no system opens it
+    if (i == steps_.size()) return spend(cost_of(way)) ? visit_(way) : too_many();
+    const std::string& step = steps_[i];
+    if (auto done = follow((fs::path(way) / step).string(), i + 1); !done) return done;
+    const auto pattern = marked(step);
+    if (!pattern) return {};
+    std::vector<std::string> names;
+    if (!find(way, *pattern, names)) return too_many();
+    for (const std::string& name : names) {
+      if (auto done = follow((fs::path(way) / name).string(), i + 1); !done) return done;
+    }
+    return {};
+  }
+
+  bool find(const std::string& way, const Marked& pattern, std::vector<std::string>& names) {
+    constexpr int64_t kCostOfOne = 64;  // to be followed
+    if (!spend(kCostOfOne + cost_of(way))) return false;
+    std::error_code failed;
+    fs::directory_iterator entries(folder_ / way, failed);
+    for (; !failed && entries != fs::directory_iterator(); entries.increment(failed)) {
+      std::string name = entries->path().filename().string();
+      const bool meant = name.starts_with(pattern.before) && name.ends_with(pattern.after);
+      if (!spend(meant ? kCostOfOne : 1)) return false;
+      if (meant) names.push_back(std::move(name));
+    }
+    return true;
+  }
+
+  bool spend(int64_t cost) { return cost == 0 || (left_ -= cost) > 0; }
+
+  Status too_many() const {
+    return Error{file_ +
+                 ": the names of this scene, and of those before it, that have marks "
+                 "('####', '<UDIM>') or many steps may mean too many files, expected fewer "
+                 "of them, or folders of fewer files"};
+  }
+
+  const fs::path folder_;
+  const std::string& file_;
+  std::atomic<int64_t>& left_;
+  const Visit visit_;
+  std::vector<std::string> steps_;
+};
 
 }  // namespace
 
@@ -70,22 +128,14 @@ Status SceneLinks::check_one(const std::string& base, const std::string& file) c
 
 Status SceneLinks::check(const std::string& scene, const std::string& file) const {
   if (!left_) return {};
+  if (file.size() > kLongestFileName) {
+    return Error{file.substr(0, 60) + "...: a name of " + std::to_string(file.size()) +
+                 " bytes, expected at most " + std::to_string(kLongestFileName)};
+  }
   const std::string base = fs::path(scene).parent_path().string();
-  std::vector<fs::path> meant = {fs::path()};
-  for (const fs::path& step : fs::path(file)) {
-    std::vector<fs::path> longer;
-    for (const fs::path& way : meant) {
-      if (add_meant(fs::path(folder_), way, step.string(), *left_, longer)) continue;
-      return Error{file +
-                   ": the names with marks ('####', '<UDIM>') of this scene and those before "
-                   "it may mean too many files, expected fewer of them, or folders of fewer files"};
-    }
-    meant = std::move(longer);
-  }
-  for (const fs::path& each : meant) {
-    if (auto inside = check_one(base, each.string()); !inside) return inside;
-  }
-  return {};
+  return Meant(fs::path(folder_), file, *left_,
+               [&](const std::string& each) { return check_one(base, each); })
+      .all();
 }
 
 }  // namespace hyades::core

@@ -32,7 +32,7 @@ class SceneLinks {
 
   /// Entries of folders that are looked at for patterns, all together, those that are meant counted
   /// more often: some ten seconds. Links within a folder may lead back into it, over and over.
-  static constexpr int64_t kMostEntries = int64_t{1} << 24;
+  static constexpr int64_t kMostEntries = int64_t{1} << 25;
 
   std::string folder_;
   std::shared_ptr<std::atomic<int64_t>> left_;  ///< of kMostEntries; null: links are not looked at

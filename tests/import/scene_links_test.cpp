@@ -104,6 +104,40 @@ TEST_F(Links, OfWhatImportersReadThemselvesAreRefused) {
   EXPECT_THAT(trouble("scene/a.pbrt"), HasSubstr("b.pbrt: leads out of the scene's folder"));
 }
 
+/// Where there is no such scene, a file is read that has the name of its document.
+TEST_F(Links, OfFilesThatAreNamedAsDocumentsAreRefused) {
+  const char* const leads_out = "leads out of the scene's folder";
+  write("secrets/job.yaml", "materials: {stolen: {type: mirror}}\n");
+  write("scene/x.lua", "return {}");
+  link("../secrets/job.yaml", "scene/x.lua,fps=0.yaml");
+  write("scene/by_name.lua", "return {include = 'x.lua,fps=0.yaml'}");
+  EXPECT_THAT(trouble("scene/by_name.lua"), HasSubstr(leads_out));
+  SceneDocument gone;
+  gone.scene = "gone.lua";
+  gone.fps = 0.0F;
+  link("../secrets/job.yaml", "scene/" + reference_of(gone));
+  write("scene/gone.lua.files/x", "");
+  write("scene/by_script.lua", "return {include = 'gone.lua'}");
+  EXPECT_THAT(trouble("scene/by_script.lua"), HasSubstr(leads_out));
+  write("secrets/scene,prefix=o,fps=24.yaml", "materials: {o.stolen: {type: mirror}}\n");
+  link("../secrets", "scene/robot.glb.files");
+  write("scene/by_object.lua", "return {objects = {o = {gltf = 'robot.glb'}}}");
+  EXPECT_THAT(trouble("scene/by_object.lua"), HasSubstr(leads_out));
+}
+
+/// What is made of a scene is read of it, wherever it lies.
+TEST_F(Links, OfScenesWhosePartsAreNamedAreRefused) {
+  const char* const leads_out = ".glb: leads out of the scene's folder";
+  link("../secrets/id.mtl", "scene/link1.glb");
+  write("scene/a.mtl", "newmtl glow\nmap_Kd link1.glb.files/images/pic.png\n");
+  EXPECT_THAT(trouble("scene/a.obj"), HasSubstr(leads_out));
+  write("scene/picture.lua",
+        "return {textures = {t = {type = 'image', file = 'link1.glb.files/images/pic.png'}}}");
+  EXPECT_THAT(trouble("scene/picture.lua"), HasSubstr(leads_out));
+  write("scene/walk.lua", "return {objects = {o = {mesh = 'link#.glb.files/meshes/a.ply'}}}");
+  EXPECT_THAT(trouble("scene/walk.lua"), HasSubstr(leads_out));
+}
+
 TEST_F(Links, OfPicturesOfOtherFormatsAreRefused) {
   link("../secrets/id.png", "scene/id.png");
   write("scene/t.pbrt",
@@ -147,6 +181,11 @@ TEST_F(Links, OfAPatternThatLeadBackIntoTheFolderEnd) {
   EXPECT_THAT(meant.error().message, HasSubstr("may mean too many files"));
   EXPECT_TRUE(links.check("scene/a.obj", "scene/a.png"));
   EXPECT_FALSE(links.check("scene/a.obj", "scene/#/a.png")) << "all patterns have so many together";
+  std::string deep = "scene";
+  while (deep.size() < 4000) deep += "/a";
+  EXPECT_TRUE(SceneLinks(folder_.path().string()).check("scene/a.obj", deep));
+  EXPECT_THAT(links.check("scene/a.obj", deep + deep).error().message,
+              HasSubstr("a name of 8002 bytes, expected at most 4096"));
 }
 
 TEST_F(Links, ImportKeepsToTheSameRule) {
