@@ -115,10 +115,34 @@ def material(name: str = "Matt", node: str | None = "ShaderNodeBsdfDiffuse", **i
     return made
 
 
+def set_of_cycles(data, name: str, value) -> None:
+    """A setting of Cycles, which Blender 4 has with its own."""
+    setattr(data if hasattr(data, name) else data.cycles, name, value)
+
+
+def sharpen(made) -> None:
+    """Lets a glossy shader be a mirror, as which Blender 4 takes any without roughness."""
+    if bpy.app.version < (4, 0):
+        shader_of(made).distribution = "SHARP"
+
+
+# Sockets of the Principled BSDF as Blender 4 calls them.
+_RENAMED = {
+    "Clearcoat": "Coat Weight",
+    "Clearcoat Roughness": "Coat Roughness",
+    "Emission": "Emission Color",
+    "Sheen": "Sheen Weight",
+    "Specular": "Specular IOR Level",
+    "Subsurface": "Subsurface Weight",
+    "Transmission": "Transmission Weight",
+}
+
+
 def said(node, **inputs):
-    """Gives a node's sockets their values."""
+    """Gives a node's sockets their values; by the names of Blender 3."""
     for name, value in inputs.items():
-        socket = node.inputs[name.replace("_", " ")]
+        name = name.replace("_", " ")
+        socket = node.inputs[name if name in node.inputs else _RENAMED[name]]
         if socket.type == "RGBA":
             value = rgba(value)
         socket.default_value = value

@@ -12,6 +12,7 @@ import pathlib
 import sys
 import tempfile
 import time
+import traceback
 import types
 
 HERE = pathlib.Path(__file__).resolve().parent
@@ -73,6 +74,8 @@ if __name__ == "__main__":
     try:
         arguments = sys.argv[sys.argv.index("--") + 1 :]
         status = main(arguments[0], arguments[1:])
+    except Exception:
+        traceback.print_exc()
     finally:
         sys.stdout.flush()
         os._exit(status)  # Blender would end with 0 whatever was raised

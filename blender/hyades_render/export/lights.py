@@ -159,7 +159,9 @@ def _add_area(context: Context, light: PlacedLight, color: Any) -> None:
     if area <= 0:
         context.complain(light.where, "a lamp without a size is left out")
         return
-    emit = objects.Emit(color=color, radiance=data.energy / (4 * area))
+    # Until Blender 4 the same watts are darker by pi / 4.
+    radiance = data.energy / ((math.pi if bpy.app.version >= (4, 0) else 4) * area)
+    emit = objects.Emit(color=color, radiance=radiance)
     body = objects.Mesh(mesh=mesh, material=materials.NullMaterial(), emit=emit, transform=axes.steps(light.matrix))
     _add_body(context, light, body)
 

@@ -3,7 +3,7 @@
 import math
 
 import bpy
-from scene import camera, floor, light, material, primitive, scene, world
+from scene import camera, floor, light, material, primitive, scene, set_of_cycles, world
 
 
 def things() -> None:
@@ -68,7 +68,7 @@ def panorama() -> None:
     bpy.data.objects["Sun"].data.angle = 0  # Hyades' camera sees the sun's disc, that of Cycles does not
     object = camera((0.5, -1, 1.2), (0, 3, 1.2))
     object.data.type = "PANO"
-    object.data.cycles.panorama_type = "EQUIRECTANGULAR"
+    set_of_cycles(object.data, "panorama_type", "EQUIRECTANGULAR")
 
 
 @scene()

@@ -3,7 +3,7 @@
 import math
 
 import bpy
-from scene import add, camera, floor, light, link, material, node, primitive, scene, world
+from scene import add, camera, floor, light, link, material, node, primitive, scene, set_of_cycles, world
 
 
 def lit() -> None:
@@ -36,7 +36,10 @@ def automatic_smooth() -> None:
     # Edges of more than 30 degrees stay sharp, of less are smooth.
     lit()
     body = primitive("cylinder", material(Color=0.7), at=(0, 0, 1), turn=(30, 0, 20), smooth=True, vertices=24)
-    body.data.use_auto_smooth, body.data.auto_smooth_angle = True, math.radians(30)
+    if bpy.app.version < (4, 1):
+        body.data.use_auto_smooth, body.data.auto_smooth_angle = True, math.radians(30)
+    else:
+        body.data.set_sharp_from_angle(angle=math.radians(30))
 
 
 @scene(samples=128)
@@ -130,7 +133,7 @@ def color_by_object() -> None:
 
 def displaced_grid(method: str, scale: float, cuts: int):
     made = material(Color=(0.6, 0.5, 0.3))
-    made.cycles.displacement_method = method
+    set_of_cycles(made, "displacement_method", method)
     noise = node(made, "ShaderNodeTexNoise", Scale=1.5, Detail=1.0)
     moved = node(made, "ShaderNodeDisplacement", Midlevel=0.4, Scale=scale)
     link(made, node(made, "ShaderNodeTexCoord").outputs["Object"], noise.inputs["Vector"])

@@ -3,7 +3,7 @@
 import math
 
 import bpy
-from scene import add, camera, floor, light, link, material, node, primitive, scene, shader_of, world
+from scene import add, camera, floor, light, link, material, node, primitive, scene, set_of_cycles, shader_of, world
 
 
 def sized(width: int = 160, height: int = 120) -> None:
@@ -87,7 +87,7 @@ def wood() -> None:
     world((0.45, 0.6, 0.9))
     light("SUN", 3, at=(-4, -3, 5), color=(1, 0.9, 0.75), angle=math.radians(2))
     soil = material("Soil", Color=(0.25, 0.2, 0.12))
-    soil.cycles.displacement_method = "DISPLACEMENT"
+    set_of_cycles(soil, "displacement_method", "DISPLACEMENT")
     hills = node(soil, "ShaderNodeTexNoise", Scale=0.25, Detail=2.0)
     raised = node(soil, "ShaderNodeDisplacement", Midlevel=0.5, Scale=2.0)
     link(soil, node(soil, "ShaderNodeTexCoord").outputs["Object"], hills.inputs["Vector"])

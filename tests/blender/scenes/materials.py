@@ -1,6 +1,6 @@
 """Shaders, between a floor and a world, below an area light."""
 
-from scene import floor, light, link, material, node, primitive, scene, shader_of, world
+from scene import floor, light, link, material, node, primitive, scene, shader_of, sharpen, world
 
 
 def ball(made, kind: str = "uv_sphere"):
@@ -52,14 +52,14 @@ def glossy() -> None:
 @scene()
 def mirror() -> None:
     made = material(node="ShaderNodeBsdfGlossy", Color=(0.9, 0.8, 0.6), Roughness=0.0)
-    shader_of(made).distribution = "SHARP"
+    sharpen(made)
     ball(made)
 
 
 @scene()
 def glass() -> None:
     made = material(node="ShaderNodeBsdfGlass", Color=(0.9, 1.0, 0.95), Roughness=0.0, IOR=1.5)
-    shader_of(made).distribution = "SHARP"
+    sharpen(made)
     ball(made)
 
 
@@ -140,8 +140,12 @@ def in_a_group() -> None:
     import bpy
 
     group = bpy.data.node_groups.new("Paint", "ShaderNodeTree")
-    group.inputs.new("NodeSocketColor", "Tint")
-    group.outputs.new("NodeSocketShader", "Shader")
+    if bpy.app.version < (4, 0):
+        group.inputs.new("NodeSocketColor", "Tint")
+        group.outputs.new("NodeSocketShader", "Shader")
+    else:
+        group.interface.new_socket("Tint", in_out="INPUT", socket_type="NodeSocketColor")
+        group.interface.new_socket("Shader", in_out="OUTPUT", socket_type="NodeSocketShader")
     inside, outside = group.nodes.new("NodeGroupInput"), group.nodes.new("NodeGroupOutput")
     diffuse = node(group, "ShaderNodeBsdfDiffuse")
     link(group, inside.outputs["Tint"], diffuse.inputs["Color"])
