@@ -10,6 +10,8 @@
 #include <utility>
 #include <vector>
 
+#include "core/base/assets.h"
+
 namespace hyades::core {
 
 namespace fs = std::filesystem;
