@@ -37,9 +37,11 @@ uint64_t half_of_memory() {
 
 void ignore_file_size_signal() { std::signal(SIGXFSZ, SIG_IGN); }
 
-double thread_seconds() {
+double thread_seconds() { return processor_seconds(CLOCK_THREAD_CPUTIME_ID); }
+
+double processor_seconds(clockid_t clock) {
   timespec used{};
-  ::clock_gettime(CLOCK_THREAD_CPUTIME_ID, &used);
+  ::clock_gettime(clock, &used);
   return static_cast<double>(used.tv_sec) + 1e-9 * static_cast<double>(used.tv_nsec);
 }
 

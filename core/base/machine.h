@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <ctime>
 #include <string>
 
 namespace hyades::core {
@@ -18,6 +19,9 @@ void ignore_file_size_signal();
 
 /// Seconds of a processor's time that the calling thread has used.
 double thread_seconds();
+
+/// The same of another thread, by its clock (pthread_getcpuclockid()).
+double processor_seconds(clockid_t clock);
 
 /// The folder of the running program, with a "/" at its end; its fellow programs lie beside it.
 /// Empty where that is not known.

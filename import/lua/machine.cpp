@@ -1,7 +1,6 @@
 #include "import/lua/machine.h"
 
 #include <algorithm>
-#include <ctime>
 #include <new>
 
 #include <cstdlib>
@@ -11,6 +10,7 @@
 
 #include <fmt/format.h>
 
+#include "core/base/machine.h"
 #include "core/base/printable.h"
 #include "core/base/text.h"
 
@@ -33,12 +33,6 @@ std::string shown_lines(std::string text) {
 }
 
 }  // namespace
-
-double thread_seconds() {
-  timespec now{};
-  ::clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
 
 /// Stands before every block that Lua takes.
 struct alignas(16) Machine::Header {

@@ -13,9 +13,6 @@
 
 namespace hyades::core::lua {
 
-/// Processor time of the calling thread [s].
-double thread_seconds();
-
 /// What one run of a script may take.
 struct Limits {
   /// Instructions of Lua's machine; 16 bytes that are allocated count as one, and so does each item

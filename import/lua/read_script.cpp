@@ -10,6 +10,7 @@
 
 #include <fmt/format.h>
 
+#include "core/base/machine.h"
 #include "core/base/text.h"
 #include "core/job/read_sections.h"
 #include "core/job/yaml_build.h"

@@ -8,11 +8,13 @@
 #include <cstdlib>
 #include <utility>
 
+#include "core/base/machine.h"
+
 namespace hyades::core::lua {
 
 TimeGuard::TimeGuard(double seconds, std::string what) : what_(std::move(what)) {
   ::pthread_getcpuclockid(::pthread_self(), &clock_);
-  end_ = taken() + seconds;
+  end_ = thread_seconds() + seconds;
   thread_ = std::thread([this] { watch(); });
 }
 
@@ -25,16 +27,10 @@ TimeGuard::~TimeGuard() {
   thread_.join();
 }
 
-double TimeGuard::taken() const {
-  timespec now{};
-  ::clock_gettime(clock_, &now);
-  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
-
 void TimeGuard::watch() {
   const MutexLock lock(mutex_);
   while (!over_) {
-    const double left = end_ - taken();
+    const double left = end_ - processor_seconds(clock_);
     if (left <= 0.0) {
       std::fprintf(stderr, "%s\n", what_.c_str());
       std::_Exit(2);

@@ -21,7 +21,6 @@ class TimeGuard {
 
  private:
   void watch();
-  double taken() const;
 
   clockid_t clock_{};
   double end_ = 0.0;  ///< of the watched thread's processor time [s]
