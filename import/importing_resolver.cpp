@@ -8,6 +8,7 @@
 #include <set>
 #include <span>
 #include <utility>
+#include <vector>
 
 #include "core/job/scene_document.h"
 #include "core/job/yaml_writer.h"
@@ -32,15 +33,23 @@ struct Inside {
   std::string name;   ///< of the file in its folder
 };
 
-/// Splits "robot.glb.files/meshes/body.ply"; nothing where no folder on the way is a scene's.
-std::optional<Inside> inside_of(const std::string& reference) {
+/// Splits "robot.glb.files/meshes/body.ply" at each folder on the way that is a scene's, from the
+/// outermost on.
+std::vector<Inside> all_insides_of(const std::string& reference) {
+  std::vector<Inside> all;
   const std::string mark = std::string(kMadeFolder) + "/";
   for (size_t at = reference.find(mark); at != std::string::npos;
        at = reference.find(mark, at + 1)) {
-    const std::string scene = reference.substr(0, at);
-    if (is_scene_file(scene)) return Inside{scene, reference.substr(at + mark.size())};
+    std::string scene = reference.substr(0, at);
+    if (is_scene_file(scene)) all.push_back({std::move(scene), reference.substr(at + mark.size())});
   }
-  return std::nullopt;
+  return all;
+}
+
+/// In the outermost; nothing where there is none.
+std::optional<Inside> inside_of(const std::string& reference) {
+  std::vector<Inside> all = all_insides_of(reference);
+  return all.empty() ? std::nullopt : std::optional(std::move(all.front()));
 }
 
 /// `reference` without its folder.
@@ -81,11 +90,8 @@ class ImportingResolver::Sources : public AssetResolver {
   /// `file`: as resolve_reference() gives it.
   Status check(const std::string& scene, const std::string& file) const {
     // What is made of another scene is read of that.
-    const std::string mark = std::string(kMadeFolder) + "/";
-    for (size_t at = file.find(mark); at != std::string::npos; at = file.find(mark, at + 1)) {
-      const std::string other = file.substr(0, at);
-      if (!is_scene_file(other)) continue;
-      if (auto inside = links_.check(scene, other); !inside) return inside;
+    for (const Inside& other : all_insides_of(file)) {
+      if (auto inside = links_.check(scene, other.scene); !inside) return inside;
     }
     return links_.check(scene, file);
   }

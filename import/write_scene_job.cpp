@@ -33,6 +33,7 @@ using Kind = YamlNode::Kind;
 
 /// Of a scene that moves for longer, the first so many frames are written.
 constexpr int kMostFrames = 100'000;
+/// Names of files to be made, which take memory before any is.
 constexpr size_t kMostMadeFiles = 1'000'000;
 
 /// A tree with some of its maps replaced: `change` gets each map after those within it, and answers
