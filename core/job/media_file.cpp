@@ -76,8 +76,7 @@ YamlPtr read_media_file(std::string_view text, const std::string& file, Diagnost
   YamlPtr root = parse_yaml(is_json(text) ? without_tabs(text) : text, file, diagnostics);
   if (root == nullptr) return nullptr;
   if (const YamlEntry* section = root->find("media")) root = section->value;
-  YamlNode none;
-  none.kind = YamlNode::Kind::map;
+  YamlNode none = empty_map();
   none.where = root->where;
   none.weight = root->weight;
   JoinedSection media(none);
