@@ -11,6 +11,7 @@
 #include <CLI/CLI.hpp>
 
 #include "cli/command_line.h"
+#include "cli/film_size_option.h"
 #include "cli/interrupt.h"
 #include "cli/job_frames.h"
 #include "cli/join_films.h"
@@ -28,6 +29,7 @@ struct Options {
   std::vector<std::string> films;
   std::string folder = ".";
   SceneOptions scene;
+  FilmSizeOption size;   ///< as the films were rendered with
   uint32_t samples = 0;  ///< of the films, where not the job's; 0: the job's
   bool film = false;
   bool overwrite = false;
@@ -44,6 +46,7 @@ std::optional<int> parse(int argc, char** argv, Options& options) {
   app.add_option("-o,--output", options.folder, "folder for what is written")
       ->capture_default_str()
       ->type_name("DIR");
+  declare_film_size(app, options.size);
   app.add_option("--samples", options.samples,
                  "samples per pixel that the films were rendered with (default: the job's)")
       ->check(in_range(1U, 1U << 24U));
@@ -73,9 +76,10 @@ int fail(const std::string& message) {
 std::string other_frame(const core::FilmInfo& info, const core::Job& job) {
   if (info.width != job.film.width || info.height != job.film.height) {
     return fmt::format(
-        "its films are of {} x {} pixels, the job's frames have {} x {}; a render with --size or "
-        "--scale is finished by a job of that size",
-        info.width, info.height, job.film.width, job.film.height);
+        "its films are of {} x {} pixels, the job's frames have {} x {}; --size {}x{} takes them "
+        "all "
+        "the same",
+        info.width, info.height, job.film.width, job.film.height, info.width, info.height);
   }
   if (info.crop != core::render_window(job.film)) {
     return "its films are of another part of the frame (--crop) than the job renders";
@@ -125,6 +129,7 @@ int finish_job_command(int argc, char** argv) {
   auto loaded = load_job(options.job, options.scene);
   if (!loaded) return kBadInput;
   core::Job& job = loaded->job;
+  resize_film(options.size, job.film);
   if (options.samples != 0) job.sampling.samples = options.samples;
 
   std::map<int32_t, std::vector<std::string>> films;

@@ -1,20 +1,19 @@
 #include "cli/render_options.h"
 
 #include <algorithm>
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <cstdio>
 #include <filesystem>
 #include <optional>
 #include <string_view>
-#include <utility>
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
 
 #include "cli/address_option.h"
 #include "cli/command_line.h"
+#include "cli/film_size_option.h"
 #include "cli/frame_range.h"
 #include "cli/number_range.h"
 #include "cli/preview.h"
@@ -25,8 +24,6 @@
 
 namespace hyades::cli {
 namespace {
-
-constexpr int32_t kMostSide = 65536;  ///< pixels
 
 /// A check for options of CLI11 out of what parses their text.
 template <auto Parse>
@@ -74,40 +71,6 @@ std::string part_text(const RenderOptions& options) {
   return text;
 }
 
-/// "640x360".
-std::optional<std::pair<int32_t, int32_t>> size_in(const std::string& text) {
-  const auto sides = whole_numbers(text, 'x', 2);
-  if (!sides) return std::nullopt;
-  for (const int side : *sides) {
-    if (side < 1 || side > kMostSide) return std::nullopt;
-  }
-  return std::pair((*sides)[0], (*sides)[1]);
-}
-
-std::string size_error(const std::string& text) {
-  return size_in(text) ? std::string() : text + ": expected WIDTHxHEIGHT, such as 640x360";
-}
-
-int32_t scaled(int32_t length, double scale) {
-  return static_cast<int32_t>(
-      std::clamp(std::round(length * scale), 1.0, static_cast<double>(kMostSide)));
-}
-
-/// The film at another size; what of it is rendered (crop) stays the same part.
-void resize(core::FilmDesc& film, int32_t width, int32_t height) {
-  if (film.crop) {
-    const double x = static_cast<double>(width) / film.width;
-    const double y = static_cast<double>(height) / film.height;
-    core::PixelRect& crop = *film.crop;
-    crop = {static_cast<int32_t>(std::floor(crop.x0 * x)),
-            static_cast<int32_t>(std::floor(crop.y0 * y)),
-            std::min(static_cast<int32_t>(std::ceil(crop.x1 * x)), width),
-            std::min(static_cast<int32_t>(std::ceil(crop.y1 * y)), height)};
-  }
-  film.width = width;
-  film.height = height;
-}
-
 /// Options as they are written.
 struct Words {
   std::string samples;
@@ -133,13 +96,7 @@ void declare_what(CLI::App& app, RenderOptions& options, Words& words) {
   app.add_option("--tile", words.tile, "2/3: only this part of each frame, which writes only films")
       ->check(is_right<parse_tile>)
       ->type_name("I/N");
-  auto* size = app.add_option("--size", options.size,
-                              "the film's size in pixels, 640x360, instead of the job's")
-                   ->check(size_error)
-                   ->type_name("WIDTHxHEIGHT");
-  app.add_option("--scale", options.scale, "of the film's size: 0.5 has half as many columns")
-      ->check(in_range(0.001, 100.0))
-      ->excludes(size);
+  declare_film_size(app, options.size);
   add_whole_numbers(app, "--crop", options.crop, "X0,Y0,X1,Y1", "render only these pixels");
   // Not a plain flag: CLI11 2.4 sets those that have a default and were not given, and counts them.
   app.add_flag_function(
@@ -251,10 +208,7 @@ std::optional<LoadedJob> load_for_render(const RenderOptions& options) {
   auto loaded = load_job(options.path, scene);
   if (!loaded) return std::nullopt;
   core::Job& job = loaded->job;
-  if (const auto size = size_in(options.size)) resize(job.film, size->first, size->second);
-  if (options.scale > 0.0) {
-    resize(job.film, scaled(job.film.width, options.scale), scaled(job.film.height, options.scale));
-  }
+  resize_film(options.size, job.film);
   if (options.preview > 0) make_preview(job, options.preview);
   if (options.samples.of > 0) job.sampling.samples = options.samples.of;
   if (!options.crop.empty()) {

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "cli/film_size_option.h"
 #include "cli/load_job.h"
 #include "cli/part.h"
 #include "core/base/parallel.h"
@@ -24,8 +25,7 @@ struct RenderOptions {
   std::optional<TileOption> tile;
   uint64_t film_memory = 0;  ///< bytes; 0: what the machine is good for
   uint64_t texture_memory = core::TexelStore::default_budget();  ///< bytes
-  std::string size;                                              ///< "640x360"; empty: the job's
-  double scale = 0.0;  ///< of the film's size; 0: none was asked for
+  FilmSizeOption size;
   std::vector<int> crop;
   std::string display;     ///< HOST:PORT of a viewer; empty: none
   int preview = 0;         ///< width in pixels; 0: the job as it is
