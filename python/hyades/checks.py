@@ -65,13 +65,18 @@ def component(key: Key, value: Any) -> Any:
     return value if is_expression(value) else number(key, value)
 
 
+def are_floats(values: Sequence[Any]) -> bool:
+    """Whether all are plain floats: asked at once, for the numbers of large scenes."""
+    return set(map(type, values)) == {float}
+
+
 def several(count: int, one: Callable[[Key, Any], Any] = component) -> Callable[[Key, Any], Any]:
     def check(key: Key, value: Any) -> Any:
         if not isinstance(value, Sequence) or isinstance(value, str) or len(value) != count:
             raise refuse(f"{count} numbers")
         # Large scenes have a matrix for each of their objects.
         if one is not whole and key.low is None and key.high is None:
-            if set(map(type, value)) == {float} and all(map(math.isfinite, value)):
+            if are_floats(value) and all(map(math.isfinite, value)):
                 return list(value)
         return [one(key, item) for item in value]
 

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from .checks import are_floats
 from .described import Described, Key
 from .errors import JobError, KeyRefused
 from .files import JobFiles, write_whole
@@ -101,10 +102,10 @@ class Document:
             return self.files.reference(value)
         if isinstance(value, Described):
             return self._described(key, value)
+        if isinstance(value, (list, tuple)):
+            return value if are_floats(value) else [self._value(key, item) for item in value]
         if isinstance(value, Mapping):
             return Node((name, self._value(key, item)) for name, item in value.items())
-        if isinstance(value, (list, tuple)):
-            return [self._value(key, item) for item in value]
         return value
 
     def _animation(self, value: Keys) -> Node:

@@ -6,6 +6,8 @@ import json
 import re
 from typing import Any
 
+from .checks import are_floats
+
 _WIDTH = 100
 MADE_HERE = "# Made by hyades for Python."
 _PLAIN = re.compile(r"[A-Za-z_][A-Za-z0-9_./-]*")
@@ -33,7 +35,7 @@ def flow(value: Any) -> str:
     if isinstance(value, dict):
         return "{" + ", ".join(f"{scalar(k)}: {flow(v)}" for k, v in value.items()) + "}"
     if isinstance(value, (list, tuple)):
-        return "[" + ", ".join(flow(v) for v in value) + "]"
+        return "[" + ", ".join(map(repr if are_floats(value) else flow, value)) + "]"
     return scalar(value)
 
 
@@ -49,8 +51,11 @@ def _may_be_short(value: Any) -> bool:
         if isinstance(one, dict):
             heap.extend(one.values())
         elif isinstance(one, (list, tuple)):
-            heap.extend(one)
-    return True
+            if are_floats(one):
+                left -= 2 * len(one)
+            else:
+                heap.extend(one)
+    return left >= 0 or _is_matrix(value)
 
 
 def _is_matrix(value: Any) -> bool:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from contextlib import contextmanager
+from copy import copy
 from typing import Any, NamedTuple, Optional
 
 import numpy
@@ -27,15 +28,14 @@ _WITHOUT = {"CAMERA", "EMPTY", "LATTICE", "ARMATURE", "SPEAKER", "LIGHT_PROBE", 
 class Piece(NamedTuple):
     """A part of an object that has one material, ready to be placed."""
 
-    mesh: Any
+    body: objects.Mesh
     made: Made
 
     def object(self) -> objects.Mesh:
-        body = objects.Mesh(mesh=self.mesh, material=self.made.material)
-        if self.made.interior is not None:
-            body.interior = self.made.interior
-        if not values.is_constant(self.made.emission, 0):
-            body.emit = objects.Emit(color=values.held(self.made.emission, 0.0, 1e18), radiance=1, two_sided=True)
+        """The part as an object of its own. Thousands may share a piece: keys that hold are not checked again."""
+        body = copy(self.body)
+        if body.emit is not None:
+            body.emit = copy(body.emit)
         return body
 
 
@@ -126,7 +126,11 @@ def _piece(context: Context, whole: PartOfSurface, data: Any) -> Piece:
     piece = whole if made.displacement is None else displaced(made.displacement, whole)
     whole.is_of_object |= piece.is_of_object
     atlas = piece.atlas.uv() if made.is_baked and piece.atlas is not None else None
-    return Piece(part(piece.surface, piece.chosen, made.uv_map, made.color_attribute, atlas), made)
+    mesh = part(piece.surface, piece.chosen, made.uv_map, made.color_attribute, atlas)
+    body = objects.Mesh(mesh=mesh, material=made.material, interior=made.interior)
+    if not values.is_constant(made.emission, 0):
+        body.emit = objects.Emit(color=values.held(made.emission, 0.0, 1e18), radiance=1, two_sided=True)
+    return Piece(body, made)
 
 
 def _material_in(object: Any, slot: int) -> Optional[Any]:
