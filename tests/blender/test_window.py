@@ -1,6 +1,8 @@
 """The viewport in a window (Xvfb): it shows what Hyades renders, follows changes, and leaves no process behind."""
 
 import os
+import pathlib
+import struct
 import subprocess
 import time
 import unittest
@@ -36,16 +38,16 @@ class Window(AddOnTest):
         self.fail("it does not come")
 
     def shown(self) -> numpy.ndarray:
-        """What the viewport shows, without its edges: (h, w, 4), row 0 at the top."""
-        path = self.folder / "window.png"
-        with bpy.context.temp_override(window=self.window, area=self.area):
-            bpy.ops.screen.screenshot_area(filepath=str(path))
-        image = bpy.data.images.load(str(path))
-        pixels = numpy.empty(len(image.pixels), numpy.float32)
-        image.pixels.foreach_get(pixels)
-        width, height = image.size
-        bpy.data.images.remove(image)
-        return pixels.reshape(height, width, 4)[::-1][60:-10, 10:-10]
+        """What the viewport shows, without its edges: (h, w, 3) from 0 to 1, row 0 at the top. Read from the screen's
+        file: of what Mesa draws in Blender 4.3 the operator that takes screenshots makes black ones."""
+        data = pathlib.Path(os.environ["HYADES_SCREEN"]).read_bytes()
+        header = struct.unpack(">25I", data[:100])  # XWDFile.h
+        width, height, bytes_per_line, colors = header[4], header[5], header[12], header[19]
+        rows = numpy.frombuffer(data, numpy.uint8, height * bytes_per_line, header[0] + 12 * colors)
+        blue_first = rows.reshape(height, bytes_per_line)[:, : 4 * width].reshape(height, width, 4)
+        top, left = height - self.area.y - self.area.height, self.area.x
+        area = blue_first[top : top + self.area.height, left : left + self.area.width, 2::-1]
+        return area[60:-10, 10:-10] / 255.0
 
     def refined(self) -> bool:
         """Whether the newest picture has all samples and is drawn."""
@@ -74,10 +76,10 @@ class Window(AddOnTest):
     def test_the_viewport_refines_follows_and_ends(self) -> None:
         self.change(lambda: self.shade("RENDERED"))
         first = on_main(self.shown)
-        self.assertGreater(float(first[:, :, :3].max() - first[:, :, :3].min()), 0.2)
+        self.assertGreater(float(first.max() - first.min()), 0.2)
         self.change(lambda: self.place_cube(1000))
         second = on_main(self.shown)
-        self.assertLess(float(second[:, :, :3].max() - second[:, :, :3].min()), 0.1)
+        self.assertLess(float(second.max() - second.min()), 0.1)
         self.change(lambda: self.place_cube(0))
         numpy.testing.assert_allclose(on_main(self.shown), first, atol=0.02)
         on_main(lambda: self.shade("SOLID"))
