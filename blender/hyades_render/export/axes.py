@@ -13,6 +13,7 @@ from hyades import Step
 TO_JOB = numpy.array([[1, 0, 0, 0], [0, 0, 1, 0], [0, -1, 0, 0], [0, 0, 0, 1]], dtype=float)
 """World of Blender to world of the job, as a matrix for columns."""
 _UNCHANGED = numpy.eye(4)
+_UNCHANGED_ROWS = _UNCHANGED.reshape(-1).tolist()
 
 
 def array(matrix: Any) -> numpy.ndarray:
@@ -34,6 +35,14 @@ def matrix_step(matrix: numpy.ndarray) -> Step:
 def steps(matrix: numpy.ndarray) -> list[Step] | None:
     """The transform that is this matrix, None for one that changes nothing."""
     return None if (matrix == _UNCHANGED).all() else [matrix_step(matrix)]
+
+
+def steps_to_world(matrix: Any) -> list[Step] | None:
+    """The transform into the job's world that a matrix of Blender is, None for one that changes nothing. Without arrays, for
+    there may be very many objects."""
+    first, second, third, _ = matrix
+    rows = [*first, *third, *(0.0 - number for number in second), 0.0, 0.0, 0.0, 1.0]
+    return None if rows == _UNCHANGED_ROWS else [Step(matrix=rows)]
 
 
 def numbers(vector: Any) -> list[float]:

@@ -70,19 +70,20 @@ def add_objects(context: Context) -> None:
 
 def _add(context: Context, copies: dict[Any, _Copies], instance: Any, object: Any) -> None:
     """One object, or the first of many copies."""
-    kind, matrix = object.type, axes.array(instance.matrix_world)
+    kind, matrix = object.type, instance.matrix_world
     if kind in _WITH_SURFACE and instance.is_instance:
         pieces = pieces_of(context, object, matrix)
-        found = _Copies(object.name, pieces, _is_seen(context, object), [tuple(matrix[:3].reshape(-1))])
+        rows = tuple(axes.array(matrix)[:3].reshape(-1))
+        found = _Copies(object.name, pieces, _is_seen(context, object), [rows])
         copies[(object.as_pointer(), object.data.as_pointer())] = found
     elif kind in _WITH_SURFACE:
         is_seen = _is_seen(context, object)
         for piece in pieces_of(context, object, matrix):
-            _add_piece(context, object.name, piece, axes.placed(matrix), is_seen)
+            _add_piece(context, object.name, piece, axes.steps_to_world(matrix), is_seen)
     elif kind == "LIGHT":
         add_light(context, PlacedLight(object.name, object, axes.placed(matrix)))
     elif kind == "VOLUME":
-        add_volume(context, object, matrix)
+        add_volume(context, object, axes.array(matrix))
     elif kind not in _WITHOUT:
         context.complain(f"object '{object.name}'", f"objects of type {kind.lower()} are not supported yet")
 
@@ -102,7 +103,7 @@ def evaluated_mesh(object: Any) -> Iterator[Any]:
 
 
 def pieces_of(context: Context, object: Any, matrix: Any) -> list[Piece]:
-    """The parts of an object's evaluated mesh, one for each material; `matrix` leads into Blender's world."""
+    """The parts of an object's evaluated mesh, one for each material; `matrix`, Blender's, leads into its world."""
     is_mesh = object.type == "MESH"
     materials = tuple(slot.material.name_full if slot.material else "" for slot in object.material_slots)
     key = (object.data.as_pointer(), materials)
@@ -111,7 +112,7 @@ def pieces_of(context: Context, object: Any, matrix: Any) -> list[Piece]:
     with evaluated_mesh(object) as mesh:
         if mesh is None:
             return []
-        surface = Surface(mesh, object, matrix)
+        surface = Surface(mesh, object, axes.array(matrix))
         slots = surface.slots
         kinds = numpy.unique(slots)
         parts = [PartOfSurface(surface, slots == slot if len(kinds) > 1 else slice(None)) for slot in kinds]
@@ -139,9 +140,9 @@ def _material_in(object: Any, slot: int) -> Optional[Any]:
     return slots[min(slot, len(slots) - 1)].material if len(slots) else None
 
 
-def _add_piece(context: Context, name: str, piece: Piece, matrix: Any, is_seen: bool) -> None:
+def _add_piece(context: Context, name: str, piece: Piece, transform: Any, is_seen: bool) -> None:
     body = piece.object()
-    body.transform = axes.steps(matrix)
+    body.transform = transform
     if not is_seen:
         body.visible_to_camera = False
     context.job.objects[free_name(name, context.job.objects)] = body
@@ -169,7 +170,7 @@ def _place(context: Context, copies: _Copies) -> None:
     if len(placed) < 2 or shines:
         for matrix in placed:
             for piece in copies.pieces:
-                _add_piece(context, copies.name, piece, matrix, copies.is_seen)
+                _add_piece(context, copies.name, piece, axes.steps(matrix), copies.is_seen)
         return
     if not copies.pieces:
         return
