@@ -126,6 +126,13 @@ def sharpen(made) -> None:
         shader_of(made).distribution = "SHARP"
 
 
+def scattered_once(made):
+    """`made`, whose glossy shader loses what its grooves reflect more than once: what Blender 4 makes of that by default is
+    another model than ours (docs/blender.md)."""
+    shader_of(made).distribution = "GGX"
+    return made
+
+
 # Sockets of the Principled BSDF as Blender 4 calls them.
 _RENAMED = {
     "Clearcoat": "Coat Weight",

@@ -3,7 +3,7 @@
 import math
 
 import bpy
-from scene import add, camera, floor, light, link, material, node, primitive, scene, set_of_cycles, shader_of, world
+from scene import add, camera, floor, light, link, material, node, primitive, scattered_once, scene, set_of_cycles, shader_of, world
 
 
 def sized(width: int = 160, height: int = 120) -> None:
@@ -46,7 +46,7 @@ def monkeys() -> None:
     camera((0, -8, 3.2), (0, 0, 0.7))
 
 
-@scene(samples=256, block=0.1)
+@scene(samples=640, block=0.1)
 def room() -> None:
     # A room lit through its window and by a lamp, with wood, bricks and a mirror.
     sized()
@@ -114,14 +114,14 @@ def wood() -> None:
     camera((0, -14, 5), (0, 0, 0.5), lens=32)
 
 
-@scene(samples=256, block=0.1)
+@scene(samples=640, block=0.1)
 def machine() -> None:
     # Bevelled parts, text, pipes and a mesh of lamps, out of focus before and behind.
     sized()
     world((0.3, 0.3, 0.32))
     light("AREA", 400, at=(3, -4, 5), towards=(0, 0, 0.5), shape="DISK", size=2)
     floor(material("Bench", Color=(0.35, 0.38, 0.4)), size=30)
-    steel = material("Steel", node="ShaderNodeBsdfGlossy", Color=(0.7, 0.72, 0.75), Roughness=0.35)
+    steel = scattered_once(material("Steel", node="ShaderNodeBsdfGlossy", Color=(0.7, 0.72, 0.75), Roughness=0.35))
     body = primitive("cube", steel, at=(-0.6, 0.5, 0.6), scale=(1.8, 1, 1.2), size=1)
     body.modifiers.new("Bevel", "BEVEL").width = 0.08
     wheel = primitive("torus", material("Rubber", Color=0.06), at=(1.4, -0.4, 0.62), turn=(90, 0, 20), smooth=True,
@@ -133,7 +133,8 @@ def machine() -> None:
     row.constant_offset_displace = (0.3, 0, 0)
     bpy.ops.curve.primitive_bezier_curve_add(radius=1.2, location=(0.6, 1.2, 1.2), rotation=(0.4, 0, 0.2))
     bpy.context.object.data.bevel_depth = 0.08
-    bpy.context.object.data.materials.append(material("Copper", node="ShaderNodeBsdfGlossy", Color=(0.9, 0.5, 0.35), Roughness=0.2))
+    copper = material("Copper", node="ShaderNodeBsdfGlossy", Color=(0.9, 0.5, 0.35), Roughness=0.2)
+    bpy.context.object.data.materials.append(scattered_once(copper))
     letters = bpy.data.curves.new("Plate", "FONT")
     letters.body, letters.extrude, letters.size = "HYADES", 0.03, 0.4
     letters.materials.append(material("Paint", Color=(0.8, 0.6, 0.1)))
