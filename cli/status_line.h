@@ -9,6 +9,10 @@ namespace hyades::cli {
 /// A bar of blocks, filled by `share` (0 to 1).
 std::string progress_bar(double share);
 
+/// `text` in so many columns of a terminal: a bar in it gets shorter, or goes, before the end is
+/// cut.
+std::string fitted(std::string text, int columns);
+
 /// One line of standard error that is drawn again and again, where that is a terminal; elsewhere a
 /// plain line every ten seconds.
 class StatusLine {
@@ -26,7 +30,7 @@ class StatusLine {
   /// Whether the last line is long enough ago.
   bool is_due() const;
 
-  /// Draws `text`, cut to the terminal's width, or prints it where nothing can be drawn again.
+  /// Draws `text`, fitted() to the terminal's width, or prints it where nothing can be drawn again.
   void show(const std::string& text);
 
   /// Removes the line, so that other text can be written.

@@ -102,17 +102,19 @@ double picture_noise(const Film& film, float exposure) {
   const int32_t down = step_of(window.height());
   const int32_t across = step_of(window.width());
   double sum = 0;
+  int judged = 0;
   int blocks = 0;
   for (int32_t y = window.y0 + down / 2; y < window.y1; y += down) {
     for (int32_t x = window.x0 + across / 2; x < window.x1; x += across) {
       const PixelRect block = intersection(window, {x, y, x + kNoiseBlock, y + kNoiseBlock});
       const double noise = block_noise(film, block, scale, paths);
+      ++blocks;
       if (!std::isfinite(noise)) continue;
       sum += noise;
-      ++blocks;
+      ++judged;
     }
   }
-  return blocks > 0 ? sum / blocks : -1;
+  return judged > 0 && 4 * judged >= 3 * blocks ? sum / judged : -1;
 }
 
 bool is_clean(const Film& film, const PixelRect& tile, const NoiseThreshold& threshold) {

@@ -40,8 +40,9 @@ inline constexpr int32_t kNoiseBlock = 8;
 double tile_noise(const Film& film, const PixelRect& tile, float exposure);
 
 /// The noise of a picture in one number: the mean of that of its blocks, as tile_noise() has it,
-/// over at most 256 of them all over the film's window. -1 where none of them has two batches of
-/// every pixel. Knows splats. Costs well below a millisecond.
+/// over at most 256 of them all over the film's window. -1 where fewer than three quarters of them
+/// have two batches of every pixel: the tiles that are rendered first, an even sky say, tell little
+/// of the others. Knows splats. Costs well below a millisecond.
 double picture_noise(const Film& film, float exposure);
 
 /// Whether the tile has samples enough.
