@@ -104,6 +104,7 @@ struct CheckOptions {
   std::string curve;  ///< empty: the job is summed up
   bool no_probe = false;
   bool files = false;
+  bool quiet = false;
   std::string made;  ///< folder; empty: what is made of scenes is written nowhere
   SceneOptions scene;
 };
@@ -127,6 +128,7 @@ std::optional<int> parse_check_options(int argc, char** argv, CheckOptions& opti
       ->needs("--files")
       ->type_name("DIR");
   app.add_flag("--no-probe", options.no_probe, "do not render a few pixels to estimate the time");
+  app.add_flag("-q,--quiet", options.quiet, "say nothing of a good job");
   app.footer(
       "examples:\n  hyades check jobs/cornell/job.yaml\nexit status: 0 good, 2 mistakes found");
   declare_scene_options(app, options.scene);
@@ -228,6 +230,7 @@ core::Status print_summary(const CheckOptions& options, const core::Job& job,
                            core::SceneCache& cache) {
   auto scene = core::build_scene(job, job.frames.first, cache);
   if (!scene) return scene.error();
+  if (options.quiet) return {};
   const core::PixelRect window = core::render_window(job.film);
   const core::LayerSet layers = core::needed_layers(job);
   const core::FrameRenderer renderer(*scene, job, job.frames.first, layers);

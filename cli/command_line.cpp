@@ -43,12 +43,16 @@ void share_footer(CLI::App& app) {
 std::string in_our_words(const CLI::App& app, const CLI::ParseError& error) {
   std::string text = error.what();
   if (error.get_exit_code() == static_cast<int>(CLI::ExitCodes::ExtrasError)) {
-    const std::vector<std::string> extras = app.remaining();
+    const std::vector<std::string> extras = app.remaining(true);
     const std::string extra = extras.empty() ? std::string() : extras.front();
     if (!extra.starts_with('-')) return "'" + extra + "' is one argument too many";
     std::vector<std::string> options;
-    for (const CLI::Option* option : app.get_options()) {
-      for (const std::string& name : option->get_lnames()) options.push_back("--" + name);
+    std::vector<const CLI::App*> called{&app};
+    for (const CLI::App* command : app.get_subcommands()) called.push_back(command);
+    for (const CLI::App* command : called) {
+      for (const CLI::Option* option : command->get_options()) {
+        for (const std::string& name : option->get_lnames()) options.push_back("--" + name);
+      }
     }
     const std::string name = extra.substr(0, extra.find('='));
     return "there is no option '" + name + "'" + core::did_you_mean(name, options);
@@ -57,6 +61,14 @@ std::string in_our_words(const CLI::App& app, const CLI::ParseError& error) {
   static const std::regex conversion("Could not convert: (\\S+) = (.*)");
   if (std::regex_match(text, parts, conversion)) {
     return parts[1].str() + " " + parts[2].str() + ": expected a number";
+  }
+  static const std::regex no_command("A subcommand is required");
+  if (std::regex_match(text, no_command)) {
+    text = "expected one of";
+    for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; })) {
+      text += (text.ends_with("of") ? " " : ", ") + command->get_name();
+    }
+    return text;
   }
   static const std::regex missing("(\\S+) is required");
   if (std::regex_match(text, parts, missing)) return parts[1].str() + " is missing";
@@ -69,6 +81,10 @@ std::string in_our_words(const CLI::App& app, const CLI::ParseError& error) {
     static const std::regex comma(",");
     return parts[1].str() + " " + parts[2].str() + ": expected " +
            std::regex_replace(parts[3].str(), comma, " or ");
+  }
+  static const std::regex excludes("(\\S+) excludes (\\S+)");
+  if (std::regex_match(text, parts, excludes)) {
+    return parts[1].str() + ": expected no " + parts[2].str() + " beside it";
   }
   static const std::regex ours("(--\\S+): (.+): (expected .*)");
   if (std::regex_match(text, parts, ours)) {

@@ -10,6 +10,7 @@
 
 #include "cli/command_line.h"
 #include "cli/number_range.h"
+#include "cli/written_file.h"
 #include "core/finish/contact_sheet.h"
 #include "core/image/read_image.h"
 #include "core/image/write_image.h"
@@ -22,6 +23,7 @@ struct ContactSheetOptions {
   std::string output;
   int columns = 4;
   int width = 320;
+  WrittenFile written;
 };
 
 int contact_sheet_error(const std::string& message) {
@@ -39,6 +41,9 @@ std::string name_of(const std::string& path) {
 }
 
 int make_contact_sheet(const ContactSheetOptions& options) {
+  if (const auto may = options.written.check(options.output); !may) {
+    return contact_sheet_error(may.error().message);
+  }
   std::vector<core::ContactPrint> prints;
   for (const std::string& path : options.pictures) {
     auto picture = core::read_image_file(path);
@@ -49,7 +54,7 @@ int make_contact_sheet(const ContactSheetOptions& options) {
   if (!sheet) return contact_sheet_error(sheet.error().message);
   if (const auto written = core::write_png(options.output, *sheet); !written)
     return contact_sheet_error(written.error().message);
-  std::printf("%s: %zu pictures\n", options.output.c_str(), prints.size());
+  options.written.tell(options.output);
   return 0;
 }
 
@@ -58,7 +63,7 @@ int make_contact_sheet(const ContactSheetOptions& options) {
 int contact_sheet_command(int argc, char** argv) {
   CLI::App app("puts many pictures on one sheet, with their names", "hyades contact-sheet");
   ContactSheetOptions options;
-  app.add_option("pictures", options.pictures, "PNG or JPEG files")->required();
+  app.add_option("pictures", options.pictures, "PNG, EXR, JPEG, ..., in their order")->required();
   app.add_option("-o,--output", options.output, "PNG to write")->required()->type_name("FILE");
   app.add_option("--columns", options.columns, "pictures in a row, about")
       ->check(in_range(1, 1000))
@@ -66,6 +71,7 @@ int contact_sheet_command(int argc, char** argv) {
   app.add_option("--width", options.width, "of a picture, in pixels, about")
       ->check(in_range(16, 8192))
       ->capture_default_str();
+  declare_written_file(app, options.written);
   app.footer(
       "examples:\n"
       "  hyades contact-sheet out/one.png out/two.png -o sheet.png --columns 4\n"

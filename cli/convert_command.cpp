@@ -8,6 +8,7 @@
 #include "cli/command_line.h"
 #include "cli/film_commands.h"
 #include "cli/shown_output.h"
+#include "cli/written_file.h"
 #include "core/base/fp_mode.h"
 #include "core/finish/picture.h"
 #include "core/image/read_image.h"
@@ -19,6 +20,7 @@ struct ConvertOptions {
   std::string input;
   std::string layer = "beauty";
   ShownOutput shown;
+  WrittenFile written;
 };
 
 int convert(const ConvertOptions& options) {
@@ -31,13 +33,16 @@ int convert(const ConvertOptions& options) {
   if (std::filesystem::equivalent(options.input, options.shown.output.file, none)) {
     return refuse(options.input + ": would be replaced by itself, expected another file as -o");
   }
+  if (const auto may = options.written.check(options.shown.output.file); !may) {
+    return refuse(may.error().message);
+  }
   const auto picture = core::read_image_file(options.input);
   if (!picture) return refuse(picture.error().message);
   core::OutputDesc output = options.shown.desc(options.input);
   if (options.layer != "beauty") output.layers = {options.layer};
   const auto written = core::write_output(output, *picture, output.file);
   if (!written) return refuse(written.error().in(options.input).message);
-  std::fprintf(stderr, "wrote %s\n", output.file.c_str());
+  options.written.tell(output.file);
   return 0;
 }
 
@@ -48,6 +53,7 @@ int convert_command(int argc, char** argv) {
   ConvertOptions options;
   app.add_option("picture", options.input, "EXR, a film EXR, or any other picture")->required();
   declare_shown_output(app, options.shown);
+  declare_written_file(app, options.written);
   app.add_option("--layer", options.layer, "which of an EXR's layers")->capture_default_str();
   app.footer(
       "examples:\n"

@@ -8,6 +8,7 @@
 
 #include "cli/command_line.h"
 #include "cli/shown_output.h"
+#include "cli/written_file.h"
 #include "core/base/fp_mode.h"
 #include "core/finish/denoise.h"
 #include "core/finish/picture.h"
@@ -21,6 +22,7 @@ struct DenoiseOptions {
   std::string denoiser = "auto";
   int threads = 0;
   ShownOutput shown;
+  WrittenFile written;
 };
 
 void declare_denoise(CLI::App& app, DenoiseOptions& options) {
@@ -29,6 +31,7 @@ void declare_denoise(CLI::App& app, DenoiseOptions& options) {
                  "film EXR")
       ->required();
   declare_shown_output(app, options.shown);
+  declare_written_file(app, options.written);
   app.add_option(
          "--with", options.denoiser,
          "features (our own filter), oidn (Open Image Denoise, where its library is found), "
@@ -68,6 +71,9 @@ core::Image with_alpha_of(const core::Image& picture, const core::Image& clean) 
 
 int denoise_file(const DenoiseOptions& options) {
   const core::FpMode mode;
+  if (const auto may = options.written.check(options.shown.output.file); !may) {
+    return denoise_error(may.error().message);
+  }
   const auto picture = core::read_image_file(options.input);
   if (!picture) return denoise_error(picture.error().message);
   const auto clean = core::denoise(*picture, denoiser_of(options.denoiser), options.threads);
@@ -76,6 +82,7 @@ int denoise_file(const DenoiseOptions& options) {
   const core::OutputDesc output = options.shown.desc(options.input);
   if (const auto written = core::write_output(output, out, output.file); !written)
     return denoise_error(written.error().message);
+  options.written.tell(output.file);
   return 0;
 }
 

@@ -100,7 +100,7 @@ int finish_frame(const Options& options, const std::vector<std::string>& films,
   if (!whole) return fail(whole.error().message);
   const int32_t frame = whole->info.frame;
   const std::string other = other_frame(whole->info, job);
-  if (!other.empty() && whole->info.job_name == job.name) {
+  if (!other.empty()) {
     return fail("frame " + std::to_string(frame) + ": " + other);
   }
   if (const auto ours = frames.check_picture(whole->info); !ours) {
@@ -136,6 +136,10 @@ int finish_job_command(int argc, char** argv) {
   for (const std::string& path : options.films) {
     const auto info = core::read_film_info(path);
     if (!info) return fail(info.error().message);
+    if (info->job_name != job.name) {
+      return fail(fmt::format("{}: a film of the job '{}', expected films of '{}'", path,
+                              core::printable(info->job_name), job.name));
+    }
     if (info->frame < job.frames.first || info->frame > job.frames.last) {
       return fail(fmt::format("{}: a film of frame {} of '{}', expected one of {} to {} of '{}'",
                               path, info->frame, core::printable(info->job_name), job.frames.first,

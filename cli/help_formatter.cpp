@@ -60,9 +60,34 @@ std::string described(const CLI::Option* option, bool is_positional) {
     text += " (default: " + standard + ")";
   }
   if (option->get_required() && !is_positional) text += " (required)";
-  for (const CLI::Option* other : option->get_excludes())
-    text += " (not beside " + other->get_name() + ")";
-  return text;
+  std::string others;
+  for (const CLI::Option* other : option->get_excludes()) {
+    others += (others.empty() ? " (not beside " : ", ") + other->get_name();
+  }
+  return others.empty() ? text : text + others + ")";
+}
+
+/// Each line of `text` in as many as it needs; those that are indented are to be copied and stay.
+std::string wrapped(const std::string& text) {
+  std::string all;
+  std::istringstream lines(text);
+  const size_t width = columns();
+  for (std::string line; std::getline(lines, line);) {
+    if (line.starts_with(' ') || line.size() <= width) {
+      all += line + "\n";
+      continue;
+    }
+    std::istringstream words(line);
+    size_t column = 0;
+    for (std::string word; words >> word;) {
+      const bool begins = column == 0 || column + 1 + word.size() > width;
+      if (begins && column > 0) all += '\n';
+      all += (begins ? "" : " ") + word;
+      column = begins ? word.size() : column + 1 + word.size();
+    }
+    all += '\n';
+  }
+  return all;
 }
 
 /// `text` in the column beside `names`.
@@ -104,6 +129,14 @@ std::string HelpFormatter::make_help(const CLI::App* app, std::string name,
                                      CLI::AppFormatMode mode) const {
   const std::string text = CLI::Formatter::make_help(app, std::move(name), mode);
   return CLI::detail::find_and_replace(text, "\n\n\n", "\n\n");
+}
+
+std::string HelpFormatter::make_description(const CLI::App* app) const {
+  return wrapped(CLI::Formatter::make_description(app));
+}
+
+std::string HelpFormatter::make_footer(const CLI::App* app) const {
+  return wrapped(CLI::Formatter::make_footer(app));
 }
 
 std::string HelpFormatter::make_subcommand(const CLI::App* command) const {

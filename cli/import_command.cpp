@@ -37,6 +37,8 @@ int import_command(int argc, char** argv) {
       ->check(in_range(0.001F, 1e6F))
       ->capture_default_str();
   app.add_flag("--overwrite", request.overwrite, "replace files that are there already");
+  bool quiet = false;
+  app.add_flag("-q,--quiet", quiet, "say nothing where all goes well");
   std::vector<std::string> set;
   declare_set_option(app, set);
   bool missing_textures = false;
@@ -67,6 +69,7 @@ int import_command(int argc, char** argv) {
   for (const std::string& note : written->notes) {
     std::fprintf(stderr, "%s\n", core::printable(note).c_str());
   }
+  if (quiet) return 0;
   std::fprintf(stderr, "wrote %s", request.job.c_str());
   if (written->files.size() > 1) {
     std::fprintf(stderr, " and %s beside it",

@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "core/base/printable.h"
 #include "core/base/text.h"
 #include "core/film/coverage_gaps.h"
 #include "core/film/noise.h"
@@ -39,6 +40,11 @@ core::Result<core::FilmFile> join_films(const std::vector<std::string>& paths) {
     const std::string& path = paths[i];
     const core::Result<core::FilmFile> next = core::read_film_exr(path);
     if (!next) return next.error();
+    if (next->info.job_name != whole->info.job_name) {
+      return core::Error{fmt::format("{} is a film of the job '{}', {} of '{}'", path,
+                                     core::printable(next->info.job_name), paths.front(),
+                                     core::printable(whole->info.job_name))};
+    }
     if (const core::Status merged = core::merge_film_files(*whole, *next); !merged) {
       return core::Error{path + " does not fit " + opponent(joined, next->film) + ": " +
                          merged.error().message};

@@ -13,6 +13,7 @@
 #include "cli/media_swatch.h"
 #include "cli/media_text.h"
 #include "cli/number_range.h"
+#include "cli/written_file.h"
 #include "core/base/atomic_file.h"
 #include "core/base/parallel.h"
 
@@ -63,7 +64,8 @@ int show(const std::vector<std::string>& names, bool json, const LengthUnit& uni
 }
 
 int make(const MediumDescription& wanted, const std::string& file, bool json,
-         const LengthUnit& unit) {
+         const WrittenFile& written, const LengthUnit& unit) {
+  if (const auto may = written.check(file); !may) return wrong(may.error());
   const auto medium = make_described(wanted, unit.metres);
   if (!medium) return wrong(medium.error());
   const bool as_json = json || file.ends_with(".json");
@@ -73,15 +75,17 @@ int make(const MediumDescription& wanted, const std::string& file, bool json,
     std::fputs(text.c_str(), stdout);
     return 0;
   }
-  if (auto written = core::write_file(file, std::as_bytes(std::span(text))); !written) {
-    print_error(written.error().in("hyades media"));
+  if (auto done = core::write_file(file, std::as_bytes(std::span(text))); !done) {
+    print_error(done.error().in("hyades media"));
     return 1;
   }
-  std::fprintf(stderr, "wrote %s, for jobs whose unit is %s\n", file.c_str(), unit.name.c_str());
+  written.tell(file + ", for jobs whose unit is " + unit.name);
   return 0;
 }
 
-int swatch(const std::vector<std::string>& names, SwatchOptions options, const LengthUnit& unit) {
+int swatch(const std::vector<std::string>& names, SwatchOptions options, const WrittenFile& written,
+           const LengthUnit& unit) {
+  if (const auto may = written.check(options.file); !may) return wrong(may.error());
   const auto media = media_called(names, unit);
   if (!media) return wrong(media.error());
   if (media->size() > kMostInARow) {
@@ -89,8 +93,9 @@ int swatch(const std::vector<std::string>& names, SwatchOptions options, const L
                   std::to_string(kMostInARow) + " in a row"});
   }
   options.size *= unit.metres;
+  options.quiet = written.quiet;
   if (const auto done = render_swatch(*media, options); !done) return wrong(done.error());
-  std::fprintf(stderr, "wrote %s\n", options.file.c_str());
+  written.tell(options.file);
   return 0;
 }
 
@@ -101,6 +106,7 @@ struct MediaOptions {
   std::vector<std::string> names;
   std::string file;
   MediumDescription wanted;
+  WrittenFile written;
   SwatchOptions swatch;
   float size = 0.0F;  ///< of a ball of the swatch, in `unit`; 0: nothing was said
 };
@@ -153,6 +159,7 @@ const CLI::App* declare_make(CLI::App& app, MediaOptions& said) {
   command.add_option("-o,--output", said.file,
                      "file (.json or .yaml; default: YAML on standard output)");
   command.add_flag("--json", said.json, "JSON, whatever the file is called");
+  declare_written_file(command, said.written);
   add_unit(command, said);
   return &command;
 }
@@ -171,6 +178,7 @@ void declare_swatch(CLI::App& app, MediaOptions& said) {
   command.add_option("--threads", said.swatch.threads, "rendering threads")
       ->check(in_range(1, 1024))
       ->capture_default_str();
+  declare_written_file(command, said.written);
   add_unit(command, said);
 }
 
@@ -200,9 +208,9 @@ int media_command(int argc, char** argv) {
   const LengthUnit in = unit_called(said.unit);
   if (lists->parsed()) return list(said.json, in);
   if (shows->parsed()) return show(said.names, said.json, in);
-  if (makes->parsed()) return make(said.wanted, said.file, said.json, in);
+  if (makes->parsed()) return make(said.wanted, said.file, said.json, said.written, in);
   said.swatch.size = said.size > 0.0F ? said.size : 0.02F / in.metres;
-  return swatch(said.names, said.swatch, in);
+  return swatch(said.names, said.swatch, said.written, in);
 }
 
 }  // namespace hyades::cli

@@ -71,7 +71,7 @@ core::Status render_swatch(const std::vector<KnownMedium>& media, const SwatchOp
   how.threads = options.threads;
   StatusLine line;
   how.progress = [&](double share) {
-    if (!line.is_due()) return;
+    if (options.quiet || !line.is_due()) return;
     const std::string bar = line.redraws() ? progress_bar(share) + "  " : "";
     line.show(fmt::format("{}{:3.0f} %", bar, 100.0 * share));
   };

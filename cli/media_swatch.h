@@ -14,6 +14,7 @@ struct SwatchOptions {
   float size = 0.02F;     ///< m, diameter of a ball
   uint32_t samples = 24;  ///< per pixel
   int threads = 1;
+  bool quiet = false;
 };
 
 /// Renders a row of balls of the media, each of its index of refraction, on a striped table that

@@ -7,6 +7,7 @@
 
 #include "cli/command_line.h"
 #include "cli/join_films.h"
+#include "cli/written_file.h"
 #include "core/base/text.h"
 #include "core/film/film_exr.h"
 
@@ -16,7 +17,7 @@ namespace {
 struct MergeOptions {
   std::vector<std::string> inputs;
   std::string output;
-  bool quiet = false;
+  WrittenFile written;
 };
 
 void declare_merge(CLI::App& app, MergeOptions& options) {
@@ -25,7 +26,7 @@ void declare_merge(CLI::App& app, MergeOptions& options) {
   app.add_option("-o,--output", options.output, "where to write the joined film")
       ->required()
       ->type_name("FILE");
-  app.add_flag("-q,--quiet", options.quiet, "say nothing where all goes well");
+  declare_written_file(app, options.written);
   app.footer(
       "examples:\n"
       "  hyades merge north.0007.exr south.0007.exr -o film.0007.exr\n"
@@ -42,12 +43,15 @@ int merge_error(const std::string& message) {
 }
 
 int merge(const MergeOptions& options) {
+  if (const auto may = options.written.check(options.output); !may) {
+    return merge_error(may.error().message);
+  }
   const auto whole = join_films(options.inputs);
   if (!whole) return merge_error(whole.error().message);
   if (const core::Status written = core::write_film_exr(options.output, *whole); !written) {
     return merge_error(written.error().message);
   }
-  if (options.quiet) return 0;
+  if (options.written.quiet) return 0;
   std::printf("%s: frame %d of %s: %s, %s\n", options.output.c_str(), whole->info.frame,
               whole->info.job_name.c_str(), core::counted(options.inputs.size(), "film").c_str(),
               share_held(*whole).c_str());

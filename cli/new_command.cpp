@@ -4,12 +4,12 @@
 #include <span>
 #include <string>
 #include <string_view>
-#include <system_error>
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
 
 #include "cli/command_line.h"
+#include "cli/written_file.h"
 #include "core/base/atomic_file.h"
 #include "core/base/printable.h"
 #include "core/job/output_path.h"
@@ -94,10 +94,10 @@ int new_command(int argc, char** argv) {
   CLI::App app("Writes a job with comments, to start from.", "hyades new");
   std::string file = "job.yaml";
   bool animated = false;
-  bool overwrite = false;
+  WrittenFile written;
   app.add_option("job", file, "the job to write")->capture_default_str();
   app.add_flag("--animated", animated, "of 48 frames, and a video of them");
-  app.add_flag("--overwrite", overwrite, "replace a file that is there");
+  declare_written_file(app, written);
   app.footer(
       "examples:\n"
       "  hyades new shot.yaml\n"
@@ -115,19 +115,16 @@ int new_command(int argc, char** argv) {
     std::fprintf(stderr, "hyades new: %s: expected NAME.yaml\n", core::printable(file).c_str());
     return kExitRefused;
   }
-  std::error_code none;
-  if (!overwrite && std::filesystem::exists(file, none)) {
-    std::fprintf(stderr, "hyades new: %s is there already (--overwrite replaces it)\n",
-                 file.c_str());
+  if (const auto may = written.check(file); !may) {
+    print_error(may.error().in("hyades new"));
     return kExitRefused;
   }
   const std::string text = job_called(name, animated);
-  if (const auto written = core::write_file(file, std::as_bytes(std::span(text))); !written) {
-    print_error(written.error().in("hyades new"));
+  if (const auto done = core::write_file(file, std::as_bytes(std::span(text))); !done) {
+    print_error(done.error().in("hyades new"));
     return 1;
   }
-  std::fprintf(stderr, "wrote %s: 'hyades render %s --preview' shows it\n", file.c_str(),
-               file.c_str());
+  written.tell(file + ": 'hyades render " + file + " --preview' shows it");
   return 0;
 }
 

@@ -12,6 +12,7 @@
 
 #include <fmt/format.h>
 
+#include "core/base/text.h"
 #include "core/film/film_exr.h"
 #include "core/image/read_image.h"
 
@@ -107,7 +108,7 @@ core::Status check_own_files(const std::vector<std::string>& paths, const std::s
   return core::Error{fmt::format(
       "{}{} there, and no file of the job '{}': --overwrite replaces it, --output DIR writes "
       "elsewhere",
-      first, others > 1 ? fmt::format(" (and {} others) are", others - 1) : " is", job)};
+      first, others > 1 ? " (and " + core::counted(others - 1, "other") + ") are" : " is", job)};
 }
 
 }  // namespace hyades::cli

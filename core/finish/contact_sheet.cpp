@@ -6,6 +6,8 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -60,11 +62,19 @@ void paste(Image& sheet, const Image& picture, const int channels[3], const Plac
   }
 }
 
-/// Letters that would go beyond `width` are left out.
-void write(Image& sheet, const std::string& text, int left, int top, int width) {
-  constexpr int kAdvance = (kGlyphWidth + 1) * kLetterScale;
-  const size_t fitting = std::min(text.size(), static_cast<size_t>(width / kAdvance));
-  for (size_t i = 0; i < fitting; ++i) {
+constexpr int kAdvance = (kGlyphWidth + 1) * kLetterScale;
+
+/// Of a name that is too long the end, which has the frame's number.
+std::string shortened(const std::string& name, size_t letters) {
+  constexpr std::string_view kDots = "...";
+  if (name.size() <= letters) return name;
+  if (letters <= 2 * kDots.size()) return name.substr(name.size() - letters);
+  return std::string(kDots) + name.substr(name.size() - letters + kDots.size());
+}
+
+void write(Image& sheet, const std::string& name, int left, int top, int width) {
+  const std::string text = shortened(name, static_cast<size_t>(width / kAdvance));
+  for (size_t i = 0; i < text.size(); ++i) {
     const auto rows = glyph_of(text[i]);
     for (int y = 0; y < kGlyphHeight * kLetterScale; ++y) {
       for (int x = 0; x < kGlyphWidth * kLetterScale; ++x) {

@@ -235,7 +235,17 @@ class SceneBuilder {
   void warn_of_darkness() {
     const bool glows = std::any_of(job_.media.begin(), job_.media.end(),
                                    [](const MediumDesc& medium) { return medium.emission; });
-    if (!scene_->lights.empty() || glows) return;
+    if (glows) return;
+    if (!scene_->lights.empty()) {
+      const bool shines = std::any_of(scene_->lights.begin(), scene_->lights.end(),
+                                      [](const LightPtr& light) { return light->power() > 0.0F; });
+      if (shines) return;
+      scene_->warnings.emplace_back(
+          "its lights give nothing, the picture will be black: expected one that is brighter "
+          "than 0 in frame " +
+          std::to_string(frame_));
+      return;
+    }
     scene_->warnings.emplace_back(
         "nothing gives light, the picture will be black: expected lights, an environment, or an "
         "object with 'emit'");

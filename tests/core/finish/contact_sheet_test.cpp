@@ -59,6 +59,15 @@ TEST(ContactSheet, NamesArePrinted) {
   EXPECT_EQ(ink("llllllllllllllllllllllll"), 8 * ink("l")) << "what does not fit is left out";
 }
 
+TEST(ContactSheet, LongNamesKeepTheirEnd) {
+  const auto sheet_of = [](const std::string& name) {
+    return contact_sheet(std::vector{print(name, 100, 100, {0.0F, 0.0F, 0.0F})}, 1, 100)->data;
+  };
+  const std::string shot = "a_very_long_name_of_a_shot.";
+  EXPECT_NE(sheet_of(shot + "0001"), sheet_of(shot + "0002"));
+  EXPECT_EQ(sheet_of("another" + shot + "0001"), sheet_of("the" + shot + "0001"));
+}
+
 TEST(ContactSheet, RefusesWhatItCannotShow) {
   EXPECT_FALSE(contact_sheet({}, 4, 100));
   const std::vector<ContactPrint> prints = {{"grey", make_image(4, 4, {"Y"})}};
