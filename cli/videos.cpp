@@ -1,12 +1,19 @@
 #include "cli/videos.h"
 
+#include <algorithm>
+#include <cstddef>
 #include <cstdio>
 #include <filesystem>
 #include <system_error>
+#include <utility>
 
 #include "cli/command_line.h"
 #include "cli/interrupt.h"
 #include "core/base/text.h"
+#include "core/finish/picture.h"
+#include "core/image/read_image.h"
+#include "core/image/write_image.h"
+#include "core/job/output_path.h"
 
 namespace hyades::cli {
 namespace {
@@ -23,6 +30,39 @@ core::VideoDesc with_pictures_at_hand(const core::Job& job, const core::VideoDes
   return video;
 }
 
+/// Makes those of the video's own pictures that are not there of the frames' EXRs, where all of
+/// these are. How many; 0 where there is nothing to make them of.
+core::Result<size_t> pictures_of_light(const core::Job& job, const core::VideoDesc& video,
+                                       const core::VideoFrames& frames) {
+  const core::OutputDesc* light = core::light_of_pictures(job, video);
+  if (light == nullptr) return size_t{0};
+  const auto own =
+      std::find_if(job.outputs.begin(), job.outputs.end(),
+                   [&](const core::OutputDesc& output) { return output.file == video.pictures; });
+  std::vector<std::pair<std::string, std::string>> missing;  // the light, and its picture
+  for (const int32_t number : frames.numbers) {
+    const std::string picture = core::output_path(*own, frames.folder, number);
+    std::error_code none;
+    if (std::filesystem::exists(picture, none)) continue;
+    missing.emplace_back(core::output_path(*light, frames.folder, number), picture);
+    if (!std::filesystem::exists(missing.back().first, none)) return size_t{0};
+  }
+  for (const auto& [exr, picture] : missing) {
+    const auto image = core::read_image_file(exr);
+    if (!image) return image.error();
+    const auto texts = core::read_exr_texts(exr);
+    if (!texts) return texts.error();
+    core::ImageMetadata metadata;
+    for (const auto& text : *texts) {
+      if (text.first.starts_with("hyades.")) metadata.push_back(text);
+    }
+    if (auto written = core::write_output(*own, *image, picture, metadata); !written) {
+      return written.error();
+    }
+  }
+  return missing.size();
+}
+
 }  // namespace
 
 bool make_videos(const core::Job& job, const std::string& folder,
@@ -33,12 +73,26 @@ bool make_videos(const core::Job& job, const std::string& folder,
     const std::string file = core::video_file(video, frames);
     const core::VideoDesc at_hand = with_pictures_at_hand(job, video, frames);
     std::error_code none;
-    if (!core::missing_pictures(at_hand, frames).empty() &&
-        std::filesystem::exists(std::filesystem::path(folder) / file, none)) {
+    if (!core::missing_pictures(at_hand, frames).empty()) {
+      const auto made = pictures_of_light(job, video, frames);
+      if (!made) {
+        print_error(made.error());
+        all = false;
+        continue;
+      }
+      if (!quiet && *made > 0) {
+        std::fprintf(stderr, "of %s, which hold the light of its pictures\n",
+                     core::light_of_pictures(job, video)->file.c_str());
+      }
+    }
+    const std::vector<std::string> missing = core::missing_pictures(at_hand, frames);
+    const std::string gone =
+        std::to_string(missing.size()) + (missing.size() == 1 ? " is" : " are");
+    if (!missing.empty() && std::filesystem::exists(std::filesystem::path(folder) / file, none)) {
       std::fprintf(stderr,
-                   "%s/%s is there, and its pictures are gone since: 'hyades render' with "
-                   "--restart makes it anew\n",
-                   folder.c_str(), file.c_str());
+                   "%s/%s is there, and of the pictures that it is made of %s gone: 'hyades "
+                   "render' with --restart makes them anew\n",
+                   folder.c_str(), file.c_str(), gone.c_str());
       all = false;
       continue;
     }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <string>
 #include <utility>
 
 #include <fmt/format.h>
@@ -16,6 +17,12 @@ std::string range_in_words(const std::vector<int32_t>& numbers, int32_t step) {
   if (numbers.size() < 2) return numbers.empty() ? "" : std::to_string(numbers[0]);
   return fmt::format("{}-{}{}", numbers.front(), numbers.back(),
                      step > 1 ? fmt::format("x{}", step) : "");
+}
+
+/// The output that leaves the pictures of `video`.
+std::vector<OutputDesc>::const_iterator own_pictures(const Job& job, const VideoDesc& video) {
+  return std::find_if(job.outputs.begin(), job.outputs.end(),
+                      [&](const OutputDesc& output) { return output.file == video.pictures; });
 }
 
 }  // namespace
@@ -41,9 +48,7 @@ std::vector<std::string> video_pictures(const VideoDesc& video, const VideoFrame
 }
 
 std::vector<std::string> alike_pictures(const Job& job, const VideoDesc& video) {
-  const auto own =
-      std::find_if(job.outputs.begin(), job.outputs.end(),
-                   [&](const OutputDesc& output) { return output.file == video.pictures; });
+  const auto own = own_pictures(job, video);
   std::vector<std::string> lossless = {video.pictures};
   std::vector<std::string> lossy;
   for (const OutputDesc& output : job.outputs) {
@@ -57,6 +62,20 @@ std::vector<std::string> alike_pictures(const Job& job, const VideoDesc& video) 
   }
   lossless.insert(lossless.end(), lossy.begin(), lossy.end());
   return lossless;
+}
+
+const OutputDesc* light_of_pictures(const Job& job, const VideoDesc& video) {
+  const auto own = own_pictures(job, video);
+  // An EXR has a denoised picture as a layer of its own.
+  if (own == job.outputs.end() || own->denoise != "false" || job.color) return nullptr;
+  const std::string layer = own->layers.empty() ? "beauty" : own->layers.front();
+  for (const OutputDesc& output : job.outputs) {
+    if (file_extension(output.file) != ".exr") continue;
+    const bool is_beauty = output.layers.empty() && layer == "beauty";
+    const auto& layers = output.layers;
+    if (is_beauty || std::find(layers.begin(), layers.end(), layer) != layers.end()) return &output;
+  }
+  return nullptr;
 }
 
 bool are_all_frames(const Job& job, const std::vector<int32_t>& numbers) {

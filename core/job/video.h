@@ -24,6 +24,10 @@ VideoFrames video_frames(const Job& job, std::string folder, std::vector<int32_t
 /// same layer, exposure and tone map, no alpha. The less is lost in them the sooner they come.
 std::vector<std::string> alike_pictures(const Job& job, const VideoDesc& video);
 
+/// The EXR output of the job that holds the light which the pictures of `video` show; nullptr where
+/// none does: where they are denoised, or made by a colour configuration.
+const OutputDesc* light_of_pictures(const Job& job, const VideoDesc& video);
+
 /// Whether these frames are all of the job's, each once: only then are its videos made unasked.
 bool are_all_frames(const Job& job, const std::vector<int32_t>& numbers);
 
