@@ -283,18 +283,13 @@ grpc::Status JobIntake::reopen(uint64_t id, v1::Job& now) {
   job.reason.clear();
   if (core::Status noted = context_.store->update_job(job); !noted)
     return farm::unavailable(noted.error());
-  if (core::Status recovered = recovery_.recover(id); !recovered) {
+  if (core::Status recovered = recovery_.recover(id, "goes on: somebody has retried it");
+      !recovered) {
     job = before;  // done, if only some of its pictures are suspect
     job.reason = "could not be taken up again: " + recovered.error().message;
     // Where this fails too it is tried again at the next start.
     (void)context_.store->update_job(job);
     return {grpc::StatusCode::FAILED_PRECONDITION, recovered.error().message};
-  }
-  {
-    const StateLock lock(context_.mutex);
-    if (ActiveJob* active = jobs_.find(id)) {
-      jobs_.note(*active, v1::LOG_LEVEL_INFO, std::nullopt, {}, "taken up again");
-    }
   }
   v1::GetJobResponse got;
   const grpc::Status status = queries_.get(id, std::nullopt, got);

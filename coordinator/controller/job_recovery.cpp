@@ -26,6 +26,9 @@ constexpr uint64_t kMostAtOnce = 256;
 /// For the documents of others to be read: a few of the longest. Who reopens a job asks once.
 constexpr std::chrono::seconds kRecoveryPatience{30};
 
+/// What a job's log says where it goes on by itself.
+constexpr const char* kRestarted = "goes on: the coordinator has been started again";
+
 /// How many frames of a job may be in work together: no more than half of `film_memory` holds, or
 /// one.
 uint32_t frames_at_once(const ActiveJob& active, uint64_t film_memory) HYADES_REQUIRES(state_lock) {
@@ -127,7 +130,7 @@ core::Status JobRecovery::recover_all() {
   const auto ids = context_.store->open_jobs();
   if (!ids) return ids.error();
   for (const uint64_t id : *ids) {
-    const core::Status recovered = recover(id);
+    const core::Status recovered = recover(id, kRestarted);
     if (recovered) continue;
     if (!lasting_obstacle(id) || !give_up(id, recovered.error())) wait(id, recovered.error());
   }
@@ -162,7 +165,7 @@ bool JobRecovery::try_to_recover(uint64_t id) {
   const auto stored = context_.store->job(id);
   if (!stored) return false;
   if (!*stored || has_ended((*stored)->state)) return true;  // somebody has deleted it
-  const core::Status recovered = recover(id);
+  const core::Status recovered = recover(id, kRestarted);
   if (recovered) return true;
   return lasting_obstacle(id) && give_up(id, recovered.error()).ok();
 }
@@ -178,7 +181,7 @@ core::Status JobRecovery::give_up(uint64_t id, const core::Error& why) {
   return context_.store->update_job(**stored);
 }
 
-core::Status JobRecovery::recover(uint64_t id) {
+core::Status JobRecovery::recover(uint64_t id, const std::string& told) {
   auto stored = context_.store->job(id);
   if (!stored) return stored.error();
   if (!*stored) return core::Error{"it is not there"};
@@ -194,8 +197,7 @@ core::Status JobRecovery::recover(uint64_t id) {
   if (!active) return active.error();
   (*active)->id = JobId{id};
   (*active)->core_ns_stored = (*active)->stored.core_ns;
-  jobs_.note(**active, v1::LOG_LEVEL_INFO, std::nullopt, {},
-             "goes on: the coordinator has been started again");
+  jobs_.note(**active, v1::LOG_LEVEL_INFO, std::nullopt, {}, told);
   auto restored = restore_frames(**active);
   if (!restored) return restored.error();
   return start(std::move(*active), std::move(*restored));

@@ -27,8 +27,9 @@ class JobRecovery {
   /// be recovered now, or cannot be stored as failed, waits and is tried again. An error where the
   /// store does not tell which jobs there are.
   core::Status recover_all() HYADES_EXCLUDES(state_lock);
-  /// Recovers the job as it is stored.
-  core::Status recover(uint64_t id) HYADES_EXCLUDES(state_lock) HYADES_NO_THREAD_SAFETY_ANALYSIS;
+  /// Recovers the job as it is stored; its log says `told`.
+  core::Status recover(uint64_t id, const std::string& told)
+      HYADES_EXCLUDES(state_lock) HYADES_NO_THREAD_SAFETY_ANALYSIS;
   /// Reads the films that are there, and hands the job to the scheduler.
   core::Status start(std::unique_ptr<ActiveJob> owned, RestoredJob restored)
       HYADES_EXCLUDES(state_lock) HYADES_NO_THREAD_SAFETY_ANALYSIS;

@@ -56,7 +56,11 @@ void check_names(ReadContext& context) {
     const std::vector<std::string>& all = context.given[kind];
     const std::span<const std::string> names(all.data(), std::min(all.size(), kMostCandidates));
     std::string hint = did_you_mean(use.name, names);
-    if (hint.empty() && names.empty()) hint = "; the job defines none";
+    if (hint.empty() && names.empty()) {
+      hint = "; the job defines none";
+      if (use.kind == NameKind::texture)
+        hint += ", and a colour is [r, g, b], \"#d8c8a8\" or 3200K";
+    }
     if (hint.empty() && names.size() <= 12) hint = "; there are " + join_names(names);
     context.complain(use.where, fmt::format("{} names the {} '{}', which does not exist{}",
                                             use.label, kNouns[kind], use.name, hint));

@@ -11,6 +11,7 @@
 #include "core/film/layout.h"
 #include "core/job/light_groups.h"
 #include "core/job/output_names.h"
+#include "core/job/suggest.h"
 
 namespace hyades::core {
 namespace {
@@ -32,8 +33,10 @@ bool check_layer(MapReader& reader, const YamlNode& item) {
   const std::vector<std::string> groups = light_groups_of(reader.context().job);
   const std::vector<std::string> names = names_of_layers(groups);
   if (std::find(names.begin(), names.end(), item.scalar) == names.end()) {
-    reader.complain(item.where, fmt::format("layer is {}, expected {}{}", describe(item),
-                                            join_names(names), did_you_mean(item.scalar, names)));
+    const std::string hint = suggest(item.scalar, names);
+    reader.complain(item.where,
+                    fmt::format("layer is {}{}", describe(item),
+                                hint.empty() ? ", expected " + join_names(names) : hint));
     return false;
   }
   if (groups.size() > kMostGroups && item.scalar.starts_with("light_group")) {

@@ -31,6 +31,13 @@ void read_matrix(MapReader& reader, std::string_view key, Mat4& matrix) {
 
 /// rotate: {axis: [x, y, z], angle: degrees} or {quaternion: [x, y, z, w]}
 void read_rotation(MapReader& reader, TransformStep& step) {
+  const YamlNode* node = reader.find("rotate");
+  if (node != nullptr && node->kind == YamlNode::Kind::list) {
+    reader.complain(node->where,
+                    "rotate is a list, expected {axis: [x, y, z], angle: degrees}; turns about x, "
+                    "y and z are steps of their own: {rotate_y: 90}");
+    return;
+  }
   reader.map("rotate", "transform.rotate", [&](MapReader& map) {
     if (map.node().find("quaternion") != nullptr) {
       step.kind = TransformStep::Kind::quaternion;

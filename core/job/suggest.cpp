@@ -35,6 +35,7 @@ constexpr auto kOtherWords = std::to_array<OtherWord>({
     {"cube", "box"},
     {"plane", "rectangle"},
     {"quad", "rectangle"},
+    {"rect", "rectangle"},
     {"ball", "sphere"},
     {"circle", "disk"},
     {"mesh", "sphere", "; a mesh is told by its file: 'mesh: body.ply'"},
@@ -56,12 +57,21 @@ constexpr auto kOtherWords = std::to_array<OtherWord>({
     {"noise", "fbm3d"},
     {"multiply", "scale"},
     {"clamp", "remap"},
+    // layers
+    {"Z", "depth"},
+    {"z", "depth"},
+    {"rgb", "beauty"},
+    {"combined", "beauty"},
+    {"normals", "normal"},
+    {"vector", "motion"},
     // keys
     {"samples", "sampling", ", did you mean 'sampling: {samples: N}'?"},
     {"spp", "sampling", ", did you mean 'sampling: {samples: N}'?"},
     {"spp", "samples"},
     {"resolution", "film", ", did you mean 'film: {size: [WIDTH, HEIGHT]}'?"},
     {"resolution", "size"},
+    {"size", "film", ", did you mean 'film: {size: [WIDTH, HEIGHT]}'?"},
+    {"seed", "sampling", ", did you mean 'sampling: {seed: N}'?"},
     {"world", "environment"},
     {"background", "environment"},
     {"sky", "environment"},
@@ -79,7 +89,9 @@ constexpr auto kOtherWords = std::to_array<OtherWord>({
     {"albedo", "color"},
     {"rotate", "transform", ", did you mean 'transform: [{rotate_y: 30}]'?"},
     {"rotation", "transform", ", did you mean 'transform: [{rotate_y: 30}]'?"},
+    {"metal", "metallic"},
     {"metalness", "metallic"},
+    {"r", "radius"},
     {"focal_length", "fov"},
     {"hdri", "image"},
     {"strength", "irradiance"},
@@ -91,7 +103,12 @@ constexpr auto kOtherWords = std::to_array<OtherWord>({
     {"height", "film", ", did you mean 'film: {size: [WIDTH, HEIGHT]}'?"},
     {"intensity", "power"},
     {"intensity", "radiance"},
+    {"intensity", "irradiance"},
+    {"intensity", "strength"},
 });
+
+/// Letters that tell a word by its beginning.
+constexpr size_t kBeginning = 4;
 
 bool is_among(std::string_view name, std::span<const std::string> names) {
   return std::find(names.begin(), names.end(), name) != names.end();
@@ -106,9 +123,11 @@ std::string other_word(std::string_view word, std::span<const std::string> names
     if (other.word != word || !is_among(other.name, names)) continue;
     return other.instead.empty() ? meant(other.name) : std::string(other.instead);
   }
+  // "color" of "base_color", "rough" of "roughness".
   const std::string ending = "_" + std::string(word);
-  const auto longer = std::find_if(names.begin(), names.end(),
-                                   [&](const std::string& name) { return name.ends_with(ending); });
+  const auto longer = std::find_if(names.begin(), names.end(), [&](const std::string& name) {
+    return name.ends_with(ending) || (word.size() >= kBeginning && name.starts_with(word));
+  });
   return longer != names.end() ? meant(*longer) : "";
 }
 

@@ -19,7 +19,7 @@ TEST(Complaints, TexturesWhereOnlyAColourIsAllowed) {
             "job.yaml:2:27: scattering is a texture; here only a colour is allowed\n");
   EXPECT_EQ(complaints("objects: {a: {shape: sphere, emit: {color: dots}}}\n"),
             "job.yaml:2:44: color of emit of object 'a' names the texture 'dots', which does not "
-            "exist; the job defines none\n");
+            "exist; the job defines none, and a colour is [r, g, b], \"#d8c8a8\" or 3200K\n");
   EXPECT_EQ(complaints("objects: {a: {shape: sphere, emit: {color: [1, -1, 0]}}}\n"),
             "job.yaml:2:48: color[1] is '-1', expected a number >= 0\n");
 }
@@ -72,7 +72,7 @@ TEST(Complaints, DanglingNames) {
             "exist, did you mean 'steel'?\n");
   EXPECT_EQ(complaints("materials: {a: {type: lambert, color: wood}}\n"),
             "job.yaml:2:39: color of material 'a' names the texture 'wood', which does not exist; "
-            "the job defines none\n");
+            "the job defines none, and a colour is [r, g, b], \"#d8c8a8\" or 3200K\n");
   EXPECT_EQ(complaints("objects: {a: {instance: house}}\ngroups: {b: {objects: {}}}\n"),
             "job.yaml:2:25: instance of object 'a' names the group 'house', which does not exist; "
             "there are b\n");

@@ -23,6 +23,16 @@ TEST(Complaints, WordsOfOtherRenderersAreKnown) {
   };
   says("materials: {m: {type: metal}}\n", "or black, did you mean 'conductor'?");
   says("materials: {m: {type: principled, color: 1}}\n", ", did you mean 'base_color'?");
+  says("materials: {m: {type: principled, metal: 1}}\n", ", did you mean 'metallic'?");
+  says("materials: {m: {type: principled, rough: 1}}\n", ", did you mean 'roughness'?");
+  says("objects: {a: {shape: rect}}\n", ", did you mean 'rectangle'?");
+  says("objects: {a: {shape: sphere, r: 2}}\n", ", did you mean 'radius'?");
+  says("seed: 3\n", "did you mean 'sampling: {seed: N}'?");
+  says("size: [3, 3]\n", "did you mean 'film: {size: [WIDTH, HEIGHT]}'?");
+  says("outputs: [{file: a.exr, layers: [Z]}]\n", "layer is 'Z', did you mean 'depth'?");
+  says("objects: {a: {shape: sphere, transform: [{rotate: [0, 90, 0]}]}}\n",
+       "rotate is a list, expected {axis: [x, y, z], angle: degrees}; turns about x, y and z are "
+       "steps of their own: {rotate_y: 90}");
   says("objects: {a: {shape: cube}}\n", "or cylinder, did you mean 'box'?");
   says("objects: {a: {shape: box, position: 1}}\n", ", did you mean 'at'?");
   says("lights: {a: {type: area}}\n", "or sun; a lamp with an area is an object with 'emit'");
