@@ -232,14 +232,23 @@ class SceneBuilder {
     return {};
   }
 
+  /// An even sky has no power of its own (Light::power()), but is as bright everywhere.
+  static bool shines(const LightPtr& light) {
+    if (light->power() > 0.0F) return true;
+    const auto is_bright = [&](const Vec3& from) {
+      return max_component(light->radiance(SurfacePoint(), -from)) > 0.0F;
+    };
+    return light->is_infinite() &&
+           (is_bright({0, 1, 0}) || is_bright({0, -1, 0}) || is_bright({1, 0, 0}) ||
+            is_bright({0, 0, 1}) || is_bright({-1, 0, 0}) || is_bright({0, 0, -1}));
+  }
+
   void warn_of_darkness() {
     const bool glows = std::any_of(job_.media.begin(), job_.media.end(),
                                    [](const MediumDesc& medium) { return medium.emission; });
     if (glows) return;
     if (!scene_->lights.empty()) {
-      const bool shines = std::any_of(scene_->lights.begin(), scene_->lights.end(),
-                                      [](const LightPtr& light) { return light->power() > 0.0F; });
-      if (shines) return;
+      if (std::any_of(scene_->lights.begin(), scene_->lights.end(), shines)) return;
       scene_->warnings.emplace_back(
           "its lights give nothing, the picture will be black: expected one that is brighter "
           "than 0 in frame " +
