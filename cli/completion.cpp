@@ -9,26 +9,35 @@ namespace {
 
 // The scripts ask the program itself (--help) for commands and options: nothing to keep in step.
 
-constexpr std::string_view kBash = R"sh(_hyades() {
-  local word=${COMP_WORDS[COMP_CWORD]} before=${COMP_WORDS[COMP_CWORD-1]} program=${COMP_WORDS[0]} offers=
+// Names of jobs and workers are others' words: what Bash's compgen -W is given it expands, commands
+// and all, and what it offers goes to the command line as it is.
+constexpr std::string_view kBash = R"sh(_hyades_offer() {
+  local line
+  while IFS= read -r line; do
+    if [[ $line == "$1"* ]]; then COMPREPLY+=("$(printf %q "$line")"); fi
+  done
+}
+_hyades() {
+  local word=${COMP_WORDS[COMP_CWORD]} before=${COMP_WORDS[COMP_CWORD-1]} program=${COMP_WORDS[0]}
   COMPREPLY=()
   if [ "$COMP_CWORD" = 1 ]; then
-    COMPREPLY=($(compgen -W "$("$program" --help 2>/dev/null | sed -nE '/^examples:/q;s/^  ([a-z-]+) .*/\1/p')" -- "$word"))
+    _hyades_offer "$word" < <("$program" --help 2>/dev/null | sed -nE '/^examples:/q;s/^  ([a-z-]+) .*/\1/p')
   elif [[ $word == -* ]]; then
-    COMPREPLY=($(compgen -W "$("$program" "${COMP_WORDS[1]}" --help 2>/dev/null | grep -oE -- '--[a-z][a-z-]*' | sort -u)" -- "$word"))
+    _hyades_offer "$word" < <("$program" "${COMP_WORDS[1]}" --help 2>/dev/null | grep -oE -- '--[a-z][a-z-]*' | sort -u)
   elif [ "${COMP_WORDS[1]}" = completion ]; then
-    COMPREPLY=($(compgen -W "bash zsh fish" -- "$word"))
+    _hyades_offer "$word" < <(printf '%s\n' bash zsh fish)
+  elif [ "${COMP_WORDS[1]}" = help ]; then
+    _hyades_offer "$word" < <("$program" --help 2>/dev/null | sed -nE '/^examples:/q;s/^  ([a-z-]+) .*/\1/p')
   elif [[ $before == --* ]]; then
-    offers=$("$program" "${COMP_WORDS[1]}" --help 2>/dev/null | sed -nE "s/^.*$before ([a-z]+(\|[a-z]+)+)( .*)?$/\1/p" | tr '|' ' ')
-    COMPREPLY=($(compgen -W "$offers" -- "$word"))
+    _hyades_offer "$word" < <("$program" "${COMP_WORDS[1]}" --help 2>/dev/null | sed -nE "s/^.*$before ([a-z]+(\|[a-z]+)+)( .*)?$/\1/p" | tr '|' '\n')
   elif [[ " status watch fetch logs trace explain pause resume cancel retry priority delete " == *" ${COMP_WORDS[1]} "* ]]; then
-    COMPREPLY=($(compgen -W "$(timeout 2 "$program" jobs --all --names 2>/dev/null)" -- "$word"))
+    _hyades_offer "$word" < <(timeout 2 "$program" jobs --all --names 2>/dev/null)
   elif [[ " drain quarantine release " == *" ${COMP_WORDS[1]} "* ]]; then
-    COMPREPLY=($(compgen -W "$(timeout 2 "$program" workers --names 2>/dev/null)" -- "$word"))
+    _hyades_offer "$word" < <(timeout 2 "$program" workers --names 2>/dev/null)
   elif [[ " ${COMP_WORDS[1]} ${COMP_WORDS[2]} " == " media "@(show|swatch)" " && $COMP_CWORD -gt 2 ]]; then
-    COMPREPLY=($(compgen -W "$("$program" media list 2>/dev/null | sed -nE '2,$s/ .*//p')" -- "$word"))
+    _hyades_offer "$word" < <("$program" media list 2>/dev/null | sed -nE '2,$s/ .*//p')
   elif [ "$COMP_CWORD" = 2 ]; then
-    COMPREPLY=($(compgen -W "$("$program" "${COMP_WORDS[1]}" --help 2>/dev/null | sed -nE '/^(Subcommands|SUBCOMMANDS):/,/^$/s/^  ([a-z-]+) .*/\1/p')" -- "$word"))
+    _hyades_offer "$word" < <("$program" "${COMP_WORDS[1]}" --help 2>/dev/null | sed -nE '/^(Subcommands|SUBCOMMANDS):/,/^$/s/^  ([a-z-]+) .*/\1/p')
   fi
 }
 complete -o default -F _hyades hyades
