@@ -12,6 +12,7 @@
 #include <fmt/format.h>
 
 #include "cli/own_files.h"
+#include "core/base/folder_links.h"
 #include "core/base/hash.h"
 #include "core/base/leftovers.h"
 #include "core/base/printable.h"
@@ -89,7 +90,18 @@ core::Status JobFrames::check_film_names() const {
   return {};
 }
 
+core::Status JobFrames::check_output_links(const std::vector<int32_t>& frames) const {
+  for (const std::string& path : all_paths(frames)) {
+    if (auto stays = core::stays_in_folder(options_.folder, path); !stays) return stays;
+  }
+  return {};
+}
+
 core::Status JobFrames::check_own_outputs(const std::vector<int32_t>& frames) const {
+  return check_own_files(all_paths(frames), loaded_.job.name);
+}
+
+std::vector<std::string> JobFrames::all_paths(const std::vector<int32_t>& frames) const {
   std::vector<std::string> paths;
   for (const int32_t frame : frames) {
     for (std::string& path : output_paths(frame)) paths.push_back(std::move(path));
@@ -97,7 +109,7 @@ core::Status JobFrames::check_own_outputs(const std::vector<int32_t>& frames) co
   if (!options_.only_films) {
     for (const std::filesystem::path& video : video_paths()) paths.push_back(video.string());
   }
-  return check_own_files(paths, loaded_.job.name);
+  return paths;
 }
 
 std::string JobFrames::below_folder(const std::string& path) const {

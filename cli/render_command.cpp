@@ -166,11 +166,26 @@ core::Status load_inputs(JobFrames& frames, bool goes_on, int32_t first) {
   return {};
 }
 
+/// The folders may have come with somebody's scene, and what is in them is written to.
 core::Status check_own_folders(const std::string& folder, const std::string& kept) {
+  namespace fs = std::filesystem;
   std::error_code failed;
+  const auto is_own = [&](const fs::path& path) {
+    const fs::file_type type = fs::symlink_status(path, failed).type();
+    return type == fs::file_type::directory || type == fs::file_type::regular ||
+           type == fs::file_type::not_found;
+  };
+  const auto refuse = [](const fs::path& path) {
+    return core::Error{path.string() +
+                       ": neither a file nor a folder, expected what an earlier run has kept, or "
+                       "nothing"};
+  };
   for (const std::string& own : {folder + "/.hyades", kept}) {
-    if (!std::filesystem::is_symlink(own, failed)) continue;
-    return core::Error{own + ": a symbolic link, expected a folder of the run's own (or none)"};
+    if (!is_own(own)) return refuse(own);
+    for (fs::directory_iterator entry(own, failed); !failed && entry != fs::directory_iterator();
+         entry.increment(failed)) {
+      if (!is_own(entry->path())) return refuse(entry->path());
+    }
   }
   return {};
 }
@@ -361,6 +376,7 @@ int render_command(int argc, char** argv) {
     return refuse(named.error());
   }
   const std::string kept = options.folder + "/.hyades/" + kept_name(options, job);
+  if (const auto own = check_own_folders(options.folder, kept); !own) return refuse(own.error());
   const OutputNote note(kept + ".outputs", *loaded);
   JobFrames frames(*loaded,
                    {options.folder, options.film || job.keep_films || options.is_part(), film_file,
@@ -368,7 +384,9 @@ int render_command(int argc, char** argv) {
   if (const auto ready = load_inputs(frames, !options.restart, numbers->front()); !ready) {
     return refuse(ready.error());
   }
-  if (const auto own = check_own_folders(options.folder, kept); !own) return refuse(own.error());
+  if (const auto stays = frames.check_output_links(*numbers); !stays) {
+    return refuse(stays.error());
+  }
   if (!options.overwrite) {
     if (const auto own = frames.check_own_outputs(*numbers); !own) return refuse(own.error());
   }

@@ -9,6 +9,7 @@
 
 #include "cli/command_line.h"
 #include "cli/interrupt.h"
+#include "core/base/folder_links.h"
 #include "core/base/text.h"
 #include "core/finish/picture.h"
 #include "core/image/read_image.h"
@@ -63,11 +64,27 @@ core::Result<size_t> pictures_of_light(const core::Job& job, const core::VideoDe
   return missing.size();
 }
 
+/// Whether no link leads the videos, or the pictures that go once they are made, out of the folder.
+core::Status stay_in_folder(const core::Job& job, const core::VideoFrames& frames) {
+  for (const core::VideoDesc& video : job.videos) {
+    std::vector<std::string> paths = core::video_pictures(video, frames);
+    paths.push_back(frames.folder + "/" + core::video_file(video, frames));
+    for (const std::string& path : paths) {
+      if (auto stays = core::stays_in_folder(frames.folder, path); !stays) return stays;
+    }
+  }
+  return {};
+}
+
 }  // namespace
 
 bool make_videos(const core::Job& job, const std::string& folder,
                  const std::vector<int32_t>& numbers, bool quiet) {
   const core::VideoFrames frames = core::video_frames(job, folder, numbers);
+  if (const auto stay = stay_in_folder(job, frames); !stay) {
+    print_error(stay.error());
+    return false;
+  }
   bool all = true;
   for (const core::VideoDesc& video : job.videos) {
     const std::string file = core::video_file(video, frames);

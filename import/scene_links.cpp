@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "core/base/assets.h"
+#include "core/base/folder_links.h"
 
 namespace hyades::core {
 
@@ -19,12 +20,6 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr std::string_view kUdim = "<UDIM>";
-
-/// Whether `path` lies in `folder` or below it; both canonical.
-bool is_inside(const fs::path& path, const fs::path& folder) {
-  return std::mismatch(folder.begin(), folder.end(), path.begin(), path.end()).first ==
-         folder.end();
-}
 
 /// What a pattern is looked for by: the name before its first mark and after its last.
 struct Marked {
@@ -39,6 +34,18 @@ std::optional<Marked> marked(const std::string& step) {
   const size_t after_frame = step.rfind('#') + 1;  // 0: there is none
   const size_t after_tile = udim == std::string::npos ? 0 : step.rfind(kUdim) + kUdim.size();
   return Marked{step.substr(0, first), step.substr(std::max(after_frame, after_tile))};
+}
+
+bool is_not_there(const std::error_code& error) {
+  return error == std::errc::no_such_file_or_directory || error == std::errc::not_a_directory;
+}
+
+/// Where nobody can tell what a link leads to, the system may open it all the same: what a name
+/// stands for may be longer than any name.
+Error unknown(const std::string& file, const std::string& way, const std::error_code& why) {
+  return Error{
+      file + ": whether it lies in the scene's folder cannot be told: " + way.substr(0, 200) +
+      ": " + why.message() + "; say --follow-links if you trust where the scene comes from"};
 }
 
 /// What it costs to follow the links of a path, in entries of a folder that could be looked at
@@ -70,25 +77,28 @@ class Meant {
     const auto pattern = marked(step);
     if (!pattern) return {};
     std::vector<std::string> names;
-    if (!find(way, *pattern, names)) return too_many();
+    if (auto found = find(way, *pattern, names); !found) return found;
     for (const std::string& name : names) {
       if (auto done = follow((fs::path(way) / name).string(), i + 1); !done) return done;
     }
     return {};
   }
 
-  bool find(const std::string& way, const Marked& pattern, std::vector<std::string>& names) {
+  /// The entries of the folder `way` that `pattern` means.
+  Status find(const std::string& way, const Marked& pattern, std::vector<std::string>& names) {
     constexpr int64_t kCostOfOne = 64;  // to be followed
-    if (!spend(kCostOfOne + cost_of(way))) return false;
+    if (!spend(kCostOfOne + cost_of(way))) return too_many();
     std::error_code failed;
     fs::directory_iterator entries(folder_ / way, failed);
     for (; !failed && entries != fs::directory_iterator(); entries.increment(failed)) {
       std::string name = entries->path().filename().string();
       const bool meant = name.starts_with(pattern.before) && name.ends_with(pattern.after);
-      if (!spend(meant ? kCostOfOne : 1)) return false;
+      if (!spend(meant ? kCostOfOne : 1)) return too_many();
       if (meant) names.push_back(std::move(name));
     }
-    return true;
+    // One that may not be listed may have links that are opened by their names.
+    if (failed && !is_not_there(failed)) return unknown(file_, way, failed);
+    return {};
   }
 
   bool spend(int64_t cost) { return cost == 0 || (left_ -= cost) > 0; }
@@ -113,9 +123,10 @@ Status SceneLinks::check_one(const std::string& base, const std::string& file) c
   std::error_code failed;
   const fs::path start = fs::path(folder_) / base;
   const fs::path home = fs::canonical(start.empty() ? "." : start, failed);
-  if (failed) return {};
+  if (failed) return is_not_there(failed) ? Status{} : unknown(file, start.string(), failed);
   const fs::path target = fs::canonical(fs::path(folder_) / file, failed);
-  if (failed || is_inside(target, home)) return {};
+  if (failed) return is_not_there(failed) ? Status{} : unknown(file, file, failed);
+  if (is_inside(target, home)) return {};
   // The first link on the way that leads out is the one to tell.
   fs::path way = start;
   for (const fs::path& step : fs::path(file).lexically_relative(base.empty() ? "." : base)) {

@@ -12,7 +12,11 @@
 #include <system_error>
 #include <utility>
 
+#include <fmt/format.h>
+
+#include "core/base/assets.h"
 #include "core/base/atomic_file.h"
+#include "core/base/folder_links.h"
 #include "core/geometry/read_mesh.h"
 #include "core/geometry/write_ply.h"
 #include "core/job/output_path.h"
@@ -35,6 +39,7 @@ using Kind = YamlNode::Kind;
 constexpr int kMostFrames = 100'000;
 /// Names of files to be made, which take memory before any is.
 constexpr size_t kMostMadeFiles = 1'000'000;
+constexpr size_t kMostMadeNames = size_t{64} << 20;  ///< bytes
 
 /// A tree with some of its maps replaced: `change` gets each map after those within it, and answers
 /// what stands in its place.
@@ -77,9 +82,11 @@ class Writer {
     source_ = job->source;
     find_frames(*job->tree);
     find_made(*job->tree);
-    if (wanted_.size() > kMostMadeFiles) {
-      return Error{request_.scene + ": it names more than " + std::to_string(kMostMadeFiles) +
-                   " files that are made of it"};
+    if (is_too_much()) {
+      return Error{fmt::format(
+          "{}: it names more than {} files that are made of it, or files whose names have more "
+          "than {} MiB",
+          request_.scene, kMostMadeFiles, kMostMadeNames >> 20)};
     }
     for (const auto& [name, in_scene] : wanted_) {
       if (auto done = copy(name, in_scene); !done) return done.error();
@@ -226,17 +233,26 @@ class Writer {
     return Error{file + ": there is no part '" + part + "' in it"};
   }
 
+  bool is_too_much() const {
+    return wanted_.size() > kMostMadeFiles || wanted_bytes_ > kMostMadeNames;
+  }
+
+  void want(const std::string& in_scene) {
+    if (wanted_.emplace(made_ + in_scene, in_scene).second) wanted_bytes_ += in_scene.size();
+  }
+
   /// Every file in the folder of what is made that the job names.
   void find_made(const YamlNode& node) {
-    if (node.kind == Kind::scalar && node.scalar.starts_with(made_)) {
+    // No file has a longer name: check() tells where one is wanted.
+    const bool may_be_file = node.kind == Kind::scalar && node.scalar.size() <= kLongestFileName;
+    if (may_be_file && node.scalar.starts_with(made_)) {
       const std::string inside = node.scalar.substr(made_.size());
       if (inside.find('#') == std::string::npos) {
-        wanted_[made_ + inside] = inside;
+        want(inside);
       } else {
         for (const int32_t frame : frames_) {
-          if (wanted_.size() > kMostMadeFiles) break;
-          const std::string file = output_path(inside, frame);
-          wanted_[made_ + file] = file;
+          if (is_too_much()) break;
+          want(output_path(inside, frame));
         }
       }
     }
@@ -270,6 +286,7 @@ class Writer {
 
   Status save(const std::string& path, std::string_view text) {
     if (auto free = check_free(path); !free) return free;
+    if (auto stays = stays_in_folder(folder_, path); !stays) return stays;
     if (auto made = make_folder(folder_of(path)); !made) return made;
     auto done = write_file(path, std::as_bytes(std::span(text.data(), text.size())));
     if (!done) return done;
@@ -290,6 +307,7 @@ class Writer {
   std::map<std::string, MeshParts> parts_;
   std::map<std::pair<std::string, std::string>, std::string> plys_;
   std::map<std::string, std::string> wanted_;  ///< name in the job's folder -> in the scene's
+  size_t wanted_bytes_ = 0;                    ///< of the names in the scene's
   std::set<std::string> saved_;
   WrittenSceneJob written_;
 };

@@ -36,8 +36,9 @@ Error failed(const std::string& doing, const std::string& path, int error) {
   return {"cannot " + doing + " " + path + ": " + reason};
 }
 
+/// None is ever a link: one may have come with somebody's scene, into whose folder is rendered.
 core::Descriptor open_file(const std::string& path, int flags) {
-  return core::open_file(path, flags, 0644);
+  return core::open_file(path, flags | O_NOFOLLOW, 0644);
 }
 
 class DiskWriter final : public LogWriter {
