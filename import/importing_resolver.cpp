@@ -177,11 +177,6 @@ struct ImportingResolver::State {
     return found->second;
   }
 
-  /// Whether what is in a scene's folder is to be made: not where no such scene is.
-  bool makes(const std::string& scene) {
-    return files.exists(scene) || !files.exists(scene + std::string(kMadeFolder));
-  }
-
   /// Whether nothing on the disk has the name of what is made of `scene`, or of `reference` itself.
   Status is_free(const std::string& scene, const std::string& reference) {
     const std::string folder = scene + std::string(kMadeFolder);
@@ -208,7 +203,7 @@ Result<Bytes> ImportingResolver::open(const std::string& reference, const std::s
   const std::string resolved = resolve_reference(reference, from);
   if (auto added = state_->find_added(resolved)) return *added;
   const auto inside = inside_of(resolved);
-  if (inside && state_->makes(inside->scene)) return state_->made(*inside, resolved);
+  if (inside) return state_->made(*inside, resolved);
   return state_->lenient.open_anywhere(reference, from);
 }
 
@@ -216,7 +211,7 @@ Result<Bytes> ImportingResolver::open_document(const std::string& reference,
                                                const std::string& from) {
   const std::string resolved = resolve_reference(reference, from);
   const auto wanted = document_of(resolved);
-  if (!wanted || !state_->makes(wanted->scene)) return open(reference, from);
+  if (!wanted) return open(reference, from);
   if (auto added = state_->find_added(resolved)) return *added;
   if (auto free = state_->is_free(wanted->scene, resolved); !free) return free.error();
   auto document = state_->document(*wanted);
@@ -229,7 +224,7 @@ bool ImportingResolver::exists(const std::string& reference) {
   const std::string resolved = resolve_reference(reference);
   if (state_->find_added(resolved)) return true;
   const auto inside = inside_of(resolved);
-  if (inside && state_->makes(inside->scene)) return state_->made(*inside, resolved).ok();
+  if (inside) return state_->made(*inside, resolved).ok();
   return state_->files.exists(reference);
 }
 
@@ -245,8 +240,7 @@ Status ImportingResolver::may_name(const std::string& scene, const std::string& 
 bool ImportingResolver::is_on_disk(const std::string& reference) const {
   const std::string resolved = resolve_reference(reference);
   if (state_->find_added(resolved)) return false;
-  const auto inside = inside_of(resolved);
-  return !(inside && state_->makes(inside->scene)) && state_->files.exists(reference);
+  return !inside_of(resolved) && state_->files.exists(reference);
 }
 
 void ImportingResolver::add(const std::string& reference, std::string text) {

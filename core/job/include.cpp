@@ -151,14 +151,13 @@ class Loader {
       return std::nullopt;
     }
     seen_.insert(reference);
-    const auto scene = document_of(reference);
+    // A file that only has such a name tells nothing of a scene, its marks nothing of a script.
+    const bool made = opening == &AssetResolver::open_document;
+    const auto scene = made ? document_of(reference) : std::nullopt;
     const std::string named = scene ? scene->scene : reference;
     std::string script = tree.origins.script_at(name.where);
     if (!script.empty()) {
-      // Both: where there is no such scene, a file may have the name of its document.
-      for (const std::string& file : {named, reference}) {
-        const auto may = assets_.may_name(script, file);
-        if (may) continue;
+      if (const auto may = assets_.may_name(script, named); !may) {
         diagnostics_.add(name.where, what + ": " + may.error().message);
         return std::nullopt;
       }

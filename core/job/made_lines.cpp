@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cstddef>
+#include <filesystem>
 #include <iterator>
 #include <utility>
 
@@ -14,6 +15,12 @@ namespace hyades::core {
 namespace {
 
 constexpr size_t kMostOthers = 256;
+
+/// Whether a script may speak for the file: scripts include others of their folder alone.
+bool is_beside(const std::string& name) {
+  const std::filesystem::path path = std::filesystem::path(name).lexically_normal();
+  return !path.is_absolute() && !path.empty() && *path.begin() != "..";
+}
 
 }  // namespace
 
@@ -40,8 +47,8 @@ YamlPlace MadeLines::place_of(std::string_view mark) {
   mark.remove_prefix(1);
   auto other = others_.find(mark);
   if (other == others_.end()) {
-    if (others_.size() >= kMostOthers) return {file_, line, 0};
     const std::string name(mark);
+    if (others_.size() >= kMostOthers || !is_beside(name)) return {file_, line, 0};
     auto path = std::make_shared<const std::string>(resolve_reference(name, *file_));
     other = others_.emplace(name, std::move(path)).first;
   }

@@ -18,8 +18,8 @@ inline constexpr std::string_view kLineMark = "#line ";
 
 /// Where the lines of a document that a script made come from: its marks (kLineMark) each tell for
 /// the lines below them, up to the next. Documents of anything else have no marks: every line is
-/// its own. Of other files the first 256 are told apart; what comes from more counts as the
-/// script's own.
+/// its own. Of other files the first 256 of the script's folder are told apart; what comes from
+/// others counts as the script's own.
 class MadeLines {
  public:
   /// `text`: the document. `file`: what complaints call it; marks count where that is a script.

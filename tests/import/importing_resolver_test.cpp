@@ -167,6 +167,25 @@ TEST_F(Importing, IsWrittenAsAJobToBeEdited) {
   EXPECT_TRUE(write_scene_job(request));
 }
 
+TEST_F(Importing, NamesOfWhatImportMakesAreBounded) {
+  // A hundred thousand names of 3,000 letters each.
+  const auto refusal = [&](const std::string& letters) {
+    std::ofstream(path("long.lua"))
+        << "local p = places({{at = {0, 0, 0}}})\n"
+           "local long = p:match('^(.*/)') .. string.rep('a', "
+        << letters
+        << ") .. '#######'\n"
+           "return {frames = {range = '1-100000'}, name = long, environment = {color = 1}}";
+    WriteSceneJob request;
+    request.scene = path("long.lua");
+    request.job = path("long.yaml");
+    const auto written = write_scene_job(request);
+    return written ? std::string() : written.error().message;
+  };
+  EXPECT_THAT(refusal("3000"), HasSubstr("files whose names have more than 64 MiB"));
+  EXPECT_THAT(refusal("60000"), Not(IsEmpty())) << "no file has such a name";
+}
+
 // A fire is light enough: no lamp and no sky are put beside it.
 TEST_F(Importing, MediaThatGlowAreLight) {
   const auto text_with = [&](const std::string& le) {

@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <unistd.h>
+
 #include <filesystem>
 #include <fstream>
 
@@ -104,9 +106,10 @@ TEST_F(Links, OfWhatImportersReadThemselvesAreRefused) {
   EXPECT_THAT(trouble("scene/a.pbrt"), HasSubstr("b.pbrt: leads out of the scene's folder"));
 }
 
-/// Where there is no such scene, a file is read that has the name of its document.
+/// A file may have the name of a scene's document, whether there is such a scene or not.
 TEST_F(Links, OfFilesThatAreNamedAsDocumentsAreRefused) {
   const char* const leads_out = "leads out of the scene's folder";
+  const char* const has_name = ".files: there is a folder of this name";
   write("secrets/job.yaml", "materials: {stolen: {type: mirror}}\n");
   write("scene/x.lua", "return {}");
   link("../secrets/job.yaml", "scene/x.lua,fps=0.yaml");
@@ -118,11 +121,11 @@ TEST_F(Links, OfFilesThatAreNamedAsDocumentsAreRefused) {
   link("../secrets/job.yaml", "scene/" + reference_of(gone));
   write("scene/gone.lua.files/x", "");
   write("scene/by_script.lua", "return {include = 'gone.lua'}");
-  EXPECT_THAT(trouble("scene/by_script.lua"), HasSubstr(leads_out));
+  EXPECT_THAT(trouble("scene/by_script.lua"), HasSubstr(has_name));
   write("secrets/scene,prefix=o,fps=24.yaml", "materials: {o.stolen: {type: mirror}}\n");
   link("../secrets", "scene/robot.glb.files");
   write("scene/by_object.lua", "return {objects = {o = {gltf = 'robot.glb'}}}");
-  EXPECT_THAT(trouble("scene/by_object.lua"), HasSubstr(leads_out));
+  EXPECT_THAT(trouble("scene/by_object.lua"), HasSubstr(has_name));
 }
 
 /// What is made of a scene is read of it, wherever it lies.
@@ -219,7 +222,62 @@ TEST_F(Links, AFolderOfTheNameOfWhatIsMadeIsRefused) {
   const std::string said = trouble("job.yaml");
   EXPECT_THAT(said, HasSubstr("scene/a.obj.files: there is a folder of this name"));
   fs::remove(folder_.path() / "scene/a.obj");
-  EXPECT_EQ(trouble("job.yaml"), "") << "without the scene, it is a folder as any other";
+  EXPECT_THAT(trouble("job.yaml"), HasSubstr("there is a folder of this name"));
+  link("nowhere", "scene/a.obj");
+  EXPECT_THAT(trouble("job.yaml"), HasSubstr("there is a folder of this name"));
+}
+
+/// The system opens what no name of the disk is long enough for.
+TEST_F(Links, ThroughFoldersTooDeepToBeToldAreRefused) {
+  const std::string step(250, 'a');
+  std::string way;
+  for (int i = 0; i < 12; ++i) way += "/" + step;
+  fs::create_directories(path("scene" + way));
+  link("." + way, "scene/L1");
+  fs::create_directories(path("scene/L1" + way));
+  link("L1" + way, "scene/L2");
+  link(path("secrets/id.png"), "scene/L2/wood.png");
+  link("L2", "scene/tex");
+  write("scene/a.mtl", "newmtl glow\nmap_Kd tex/wood.png\n");
+  ASSERT_TRUE(std::ifstream(path("scene/tex/wood.png")).good());
+  EXPECT_THAT(trouble("scene/a.obj"), HasSubstr("lies in the scene's folder cannot be told"));
+  EXPECT_EQ(trouble("scene/a.obj", true), "");
+}
+
+TEST_F(Links, InFoldersThatMayNotBeListedAreRefused) {
+  write("scene/tex/x", "");
+  link("../../secrets/id.png", "scene/tex/t.1001.png");
+  write("scene/a.mtl", "newmtl glow\nmap_Kd tex/t.<UDIM>.png\n");
+  fs::permissions(folder_.path(), fs::perms(0755));
+  fs::permissions(path("scene/tex"), fs::perms(0311));
+  // The administrator may list any.
+  const bool root = ::geteuid() == 0;
+  ASSERT_TRUE(!root || ::seteuid(65534) == 0);
+  const std::string said = trouble("scene/a.obj");
+  ASSERT_TRUE(!root || ::seteuid(0) == 0);
+  EXPECT_THAT(said, HasSubstr("lies in the scene's folder cannot be told"));
+}
+
+/// Only what is made of a script has marks that tell of scripts.
+TEST_F(Links, AFileDoesNotTakeTheWordOfAScript) {
+  write("b/b.lua", "return {name = 'b'}");
+  write("b/secret.png", "a key");
+  write("a/a.lua", "return {include = 'a2.lua,fps=0.yaml'}");
+  write("a/a2.lua,fps=0.yaml",
+        "#line 1 ../b/b.lua\ntextures: {t: {type: image, file: secret.png}}\n");
+  const std::string text =
+      "hyades: 1\ncamera: {look_from: [0, 0, 4], look_at: [0, 0, 0]}\ninclude: [a/a.lua, b/b.lua]\n"
+      "materials: {m: {type: lambert, color: t}}\nobjects: {o: {shape: sphere, material: m}}\n";
+  write("job.yaml", text);
+  const auto files = JobFiles::open(path("job.yaml"));
+  ASSERT_TRUE(files) << files.error().message;
+  Diagnostics diagnostics;
+  const Job job = parse_job(text, path("job.yaml"), (*files)->files(), diagnostics);
+  ASSERT_EQ(job.textures.size(), 1U);
+  EXPECT_THAT(diagnostics.to_string(), HasSubstr("texture 't': a/secret.png: no such file"));
+  const auto* image = std::get_if<textures::Image>(&job.textures[0].kind);
+  ASSERT_NE(image, nullptr);
+  EXPECT_EQ(image->file, "a/secret.png");
 }
 
 }  // namespace
