@@ -57,6 +57,8 @@ struct ControllerOptions {
   /// A lease whose rendering makes no progress is not renewed any more after this; where the worker
   /// loads or waits, after six times this.
   Duration stall_time = std::chrono::minutes(10);
+  /// For so long a start recovers open jobs before anybody is answered; the rest come afterwards.
+  Duration recovery_time = std::chrono::seconds(15);
   /// Bytes that films of frames in work, of all jobs, may take in memory. Jobs of which one frame
   /// takes more are refused.
   uint64_t film_memory = core::half_of_memory();

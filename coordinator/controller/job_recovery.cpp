@@ -129,7 +129,13 @@ bool JobRecovery::lasting_obstacle(uint64_t id) {
 core::Status JobRecovery::recover_all() {
   const auto ids = context_.store->open_jobs();
   if (!ids) return ids.error();
+  using Clock = std::chrono::steady_clock;
+  const auto end = Clock::now() + context_.options.recovery_time;
   for (const uint64_t id : *ids) {
+    if (Clock::now() >= end) {
+      wait(id, core::Error{"the coordinator has just been started, and others are read first"});
+      continue;
+    }
     const core::Status recovered = recover(id, kRestarted);
     if (recovered) continue;
     if (!lasting_obstacle(id) || !give_up(id, recovered.error())) wait(id, recovered.error());

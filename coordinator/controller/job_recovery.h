@@ -24,8 +24,8 @@ class JobRecovery {
       : context_(context), dispatcher_(dispatcher), jobs_(jobs), films_(films) {}
 
   /// Recovers all jobs that have not ended. One whose files are gone fails alone; one that cannot
-  /// be recovered now, or cannot be stored as failed, waits and is tried again. An error where the
-  /// store does not tell which jobs there are.
+  /// be recovered now or within ControllerOptions::recovery_time, or cannot be stored as failed,
+  /// waits and is tried again. An error where the store does not tell which jobs there are.
   core::Status recover_all() HYADES_EXCLUDES(state_lock);
   /// Recovers the job as it is stored; its log says `told`.
   core::Status recover(uint64_t id, const std::string& told)

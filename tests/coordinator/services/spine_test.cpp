@@ -68,6 +68,26 @@ TEST(Spine, ARestartedCoordinatorTakesItsJobsUpAgain) {
   EXPECT_EQ(info.incarnation(), 4U);
 }
 
+TEST(Spine, JobsThatAStartHasNoTimeForGoOnAfterwards) {
+  FarmWorld world;
+  world.options.unit_time = std::chrono::milliseconds(1);
+  world.start();
+  const uint64_t first = world.submit(2);
+  const uint64_t second = world.submit(2);
+  ScriptedWorker::Script script = world.script();
+  script.unit_time = std::chrono::milliseconds(4);
+  const ScriptedWorker worker(world.address, script);
+  ASSERT_TRUE(eventually([&] { return worker.acknowledged() >= 6; }));
+  world.stop();
+  world.options.recovery_time = std::chrono::seconds(0);
+  world.start();
+  for (const uint64_t job : {first, second}) {
+    ASSERT_TRUE(world.wait_for(job, v1::JOB_STATE_DONE));
+    EXPECT_EQ(world.get(job).job().reason(), "");
+    for (int frame = 1; frame <= 2; ++frame) world.expect_truth(job, frame);
+  }
+}
+
 TEST(Spine, OutputsThatAreDamagedBetweenTwoLivesAreMadeAgain) {
   FarmWorld world;
   world.start();
