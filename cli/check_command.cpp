@@ -247,8 +247,9 @@ core::Status print_summary(const CheckOptions& options, const core::Job& job,
   if (seconds) {
     const double hours = *seconds * samples / 3600.0;
     const bool adaptive = core::noise_threshold(job).adaptive();
-    std::printf("  cost       %s %s of one core like this one (%.3g core-hours)\n",
-                adaptive ? "at most" : "about", duration_in_words(hours).c_str(), hours);
+    std::printf("  cost       %s %s of one core like this one (%s core-hours)\n",
+                adaptive ? "at most" : "about", duration_in_words(hours).c_str(),
+                hours < 0.001 ? "< 0.001" : fmt::format("{:.3g}", hours).c_str());
   }
   return {};
 }

@@ -18,6 +18,7 @@
 #include "cli/load_job.h"
 #include "cli/number_range.h"
 #include "cli/videos.h"
+#include "cli/written_file.h"
 #include "core/base/fp_mode.h"
 #include "core/base/printable.h"
 
@@ -43,9 +44,7 @@ std::optional<int> parse(int argc, char** argv, Options& options) {
   app.add_option("job", options.job, "the job, as it was rendered")->required();
   app.add_option("films", options.films, "film EXRs of its frames, in any order")->required();
   declare_scene_options(app, options.scene);
-  app.add_option("-o,--output", options.folder, "folder for what is written")
-      ->capture_default_str()
-      ->type_name("DIR");
+  declare_output_folder(app, options.folder);
   declare_film_size(app, options.size);
   app.add_option("--samples", options.samples,
                  "samples per pixel that the films were rendered with (default: the job's)")

@@ -50,16 +50,16 @@ objects:
   block: {shape: box, size: [0.9, 0.9, 0.9], material: clay, transform: [{rotate_y: TURN}], at: [0.5, 0.45, -0.6]}
   ball: {shape: sphere, radius: 0.35, at: [0.75, 0.35, 0.75], material: brass}
   # statue: {mesh: statue.ply, material: clay}   # also .obj; whole scenes: {gltf: statue.glb}
-  lamp: {shape: sphere, radius: 0.8, at: [-3, 4.5, 3], emit: {color: 3800K, power: 1200}}  # watts
+  lamp: {shape: sphere, radius: 1.8, at: [-4, 6.5, 4.5], emit: {color: 3800K, power: 2600}}  # watts
 
 environment: {color: [0.5, 0.65, 0.9], strength: 0.9}  # or {image: sky.hdr}
 
 outputs:
   - {file: NAMEMARKS.exr, layers: [beauty, alpha, albedo, normal]}
-  - {file: NAMEMARKS.png, tone_map: filmic}
+  - {file: NAMEMARKS.png, tone_map: filmic, denoise: true}
 )yaml";
 
-constexpr std::string_view kVideo = "  - {file: NAME.mp4, tone_map: filmic}\n";
+constexpr std::string_view kVideo = "  - {file: NAME.mp4, tone_map: filmic, denoise: true}\n";
 
 std::string replaced(std::string text, std::string_view what, std::string_view with) {
   for (size_t at = text.find(what); at != std::string::npos;

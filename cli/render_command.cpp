@@ -90,14 +90,30 @@ void note_share(const RenderOptions& options, const coordinator::Progress& progr
   set_interrupted_words(fmt::format("interrupted at {}{}\n", percent_done(progress), kept));
 }
 
-/// Why the run ended before its time, and what helps.
-void print_failure(const RenderOptions& options, const FilmRoom& room, const std::string& error) {
-  print_error(core::Error{error});
+/// After what went wrong: what helps.
+void note_kept(const RenderOptions& options, const FilmRoom& room) {
   if (!options.keep_work) return;
   std::fprintf(stderr,
                "what is done is kept: the same command goes on. Until a frame is written its film "
                "lies in %s/.hyades, up to %s; --no-resume keeps none\n",
                options.folder.c_str(), core::format_bytes(room.film).c_str());
+}
+
+/// Before it is waited for: a disk that may have no room for what a run keeps of a frame.
+void warn_of_full_disk(const RenderOptions& options, const FilmRoom& room) {
+  if (!options.keep_work) return;
+  std::error_code failed;
+  std::filesystem::path there = std::filesystem::absolute(options.folder, failed);
+  while (there.has_relative_path() && !std::filesystem::exists(there, failed)) {
+    there = there.parent_path();
+  }
+  const auto space = std::filesystem::space(there, failed);
+  if (failed || space.available >= room.film) return;
+  std::fprintf(stderr,
+               "warning: the disk of %s has %s left, and a frame's film may take up to %s there "
+               "until the frame is written; --no-resume keeps none\n",
+               options.folder.c_str(), core::format_bytes(space.available).c_str(),
+               core::format_bytes(room.film).c_str());
 }
 
 int report(const RenderOptions& options, const FilmRoom& room, const JobFrames& frames,
@@ -111,10 +127,14 @@ int report(const RenderOptions& options, const FilmRoom& room, const JobFrames& 
   for (const coordinator::FrameFailure& failure : outcome.failures) {
     print_error(core::Error{fmt::format("frame {} failed: {}", failure.frame, failure.reason)});
   }
-  if (!outcome.error.empty()) {
-    print_failure(options, room, outcome.error);
-    return 1;
-  }
+  if (!outcome.error.empty()) print_error(core::Error{outcome.error});
+  const bool full =
+      std::any_of(outcome.failures.begin(), outcome.failures.end(),
+                  [](const coordinator::FrameFailure& failure) {
+                    return failure.reason.find("the disk is full") != std::string::npos;
+                  });
+  if (!outcome.error.empty() || full) note_kept(options, room);
+  if (!outcome.error.empty()) return 1;
   if (!outcome.complete) {
     note_share(options, progress);
     std::fputs(interrupted_words(), stderr);
@@ -390,6 +410,7 @@ int render_command(int argc, char** argv) {
   if (!options.overwrite) {
     if (const auto own = frames.check_own_outputs(*numbers); !own) return refuse(own.error());
   }
+  warn_of_full_disk(options, room);
   return run_frames(options, job, room, *numbers, frames, note, kept);
 }
 

@@ -18,6 +18,7 @@
 #include "cli/number_range.h"
 #include "cli/preview.h"
 #include "cli/whole_numbers.h"
+#include "cli/written_file.h"
 #include "core/job/film_file.h"
 #include "core/job/noise_threshold.h"
 #include "core/job/output_path.h"
@@ -126,9 +127,7 @@ void declare_results(CLI::App& app, RenderOptions& options) {
                  "HOST:PORT of the viewer tev: shows the picture there while it is rendered, with "
                  "all its layers (tev listens on 127.0.0.1:14158)")
       ->check(address_error);
-  app.add_option("-o,--output", options.folder, "folder for what is written")
-      ->capture_default_str()
-      ->type_name("DIR");
+  declare_output_folder(app, options.folder);
   app.add_flag(
          "--film{*}", options.film_file,
          "also write each frame's film, for 'hyades merge' and 'hyades finish': to "

@@ -10,6 +10,7 @@
 #include "cli/load_job.h"
 #include "cli/number_range.h"
 #include "cli/scene_options.h"
+#include "cli/written_file.h"
 #include "core/base/parallel.h"
 #include "core/finish/frame_outputs.h"
 #include "core/render/render_frame.h"
@@ -84,9 +85,7 @@ int strategies_command(int argc, char** argv) {
   app.add_option("--samples", samples, "per pixel (default: the job's)")
       ->check(in_range(1U, 16'777'216U));
   app.add_option("--threads", options.threads, "rendering threads")->check(in_range(1, 1024));
-  app.add_option("-o,--output", options.output, "folder for the pictures")
-      ->capture_default_str()
-      ->type_name("DIR");
+  declare_output_folder(app, options.output, "folder for the pictures");
   app.footer(
       "examples:\n  hyades strategies jobs/cornell/job.yaml --events 2 --samples 64 --output "
       "parts\n"

@@ -12,6 +12,7 @@
 #include "cli/load_job.h"
 #include "cli/scene_options.h"
 #include "cli/videos.h"
+#include "cli/written_file.h"
 #include "core/job/output_path.h"
 
 namespace hyades::cli {
@@ -48,9 +49,7 @@ int video_command(int argc, char** argv) {
   declare_scene_options(app, scene);
   app.add_option("--frames", range, "only of these frames: 1-10 or 1-10x2 (default: all)")
       ->check(no_frames_error);
-  app.add_option("-o,--output", folder, "folder of the render's outputs")
-      ->capture_default_str()
-      ->type_name("DIR");
+  declare_output_folder(app, folder, "folder of the render's outputs");
   app.add_flag("-q,--quiet", quiet, "say nothing but what is wrong");
   app.footer(
       "examples:\n"

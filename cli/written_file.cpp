@@ -1,7 +1,10 @@
 #include "cli/written_file.h"
 
+#include <algorithm>
+#include <array>
 #include <cstdio>
 #include <filesystem>
+#include <string_view>
 #include <system_error>
 
 #include <CLI/CLI.hpp>
@@ -9,6 +12,28 @@
 #include "core/base/printable.h"
 
 namespace hyades::cli {
+
+namespace {
+
+std::string wrong_folder(const std::string& path) {
+  constexpr std::array<std::string_view, 7> kPictures = {".png", ".exr", ".jpg", ".jpeg",
+                                                         ".tif", ".mp4", ".tiff"};
+  std::error_code none;
+  const bool is_picture = std::any_of(kPictures.begin(), kPictures.end(), [&](auto ending) {
+    return path.size() > ending.size() && path.ends_with(ending);
+  });
+  if (!is_picture || std::filesystem::is_directory(path, none)) return {};
+  return path + ": expected a folder; what files are called there the job's 'outputs' say";
+}
+
+}  // namespace
+
+void declare_output_folder(CLI::App& app, std::string& folder, const std::string& description) {
+  app.add_option("-o,--output", folder, description)
+      ->check(wrong_folder)
+      ->capture_default_str()
+      ->type_name("DIR");
+}
 
 core::Status WrittenFile::check(const std::string& path) const {
   std::error_code none;

@@ -22,6 +22,11 @@ struct WrittenFile {
   void tell(const std::string& path) const;
 };
 
+/// Option -o of a command that writes into a folder. The name of a picture is refused, which people
+/// say who want one.
+void declare_output_folder(CLI::App& app, std::string& folder,
+                           const std::string& description = "folder for what is written");
+
 /// Options --overwrite and -q.
 void declare_written_file(CLI::App& app, WrittenFile& written);
 

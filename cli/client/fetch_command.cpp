@@ -19,6 +19,7 @@
 #include "cli/client_commands.h"
 #include "cli/frame_range.h"
 #include "cli/transfer_display.h"
+#include "cli/written_file.h"
 #include "core/base/hash.h"
 #include "core/base/text.h"
 #include "core/film/film_codec.h"
@@ -52,9 +53,7 @@ FetchTarget target_of(const FetchOptions& options) {
 
 void declare(CLI::App& app, FetchOptions& options) {
   app.add_option("job", options.job, "its id, or its name (of several: the newest)")->required();
-  app.add_option("-o,--output", options.folder, "folder for the files")
-      ->capture_default_str()
-      ->type_name("DIR");
+  declare_output_folder(app, options.folder, "folder for the files");
   app.add_option("--frames,--frame", options.frames, "only these frames: 7,8 or 1-10 or 1-10x2")
       ->check(frame_list_error);
   app.add_flag("--follow", options.follow, "stay, and bring each file as it is finished");

@@ -44,7 +44,9 @@ std::string hours_text(const v1::Job& job) {
   const double hours = job.core_seconds() / 3600;
   if (!(hours > 0)) return "-";
   std::string text = hours < 0.01 ? "< 0.01" : fmt::format("{:.2f}", hours);
-  if (job.cost() > 0) text += fmt::format(" ({:.2f})", job.cost());
+  if (job.cost() > 0) {
+    text += job.cost() < 0.01 ? " (< 0.01)" : fmt::format(" ({:.2f})", job.cost());
+  }
   return text;
 }
 

@@ -122,6 +122,26 @@ class Watcher {
   std::unique_ptr<ProgressDisplay> display_;
 };
 
+/// Of a job that is done the first thing that its log warns of in a picture, and how many more
+/// there are: frames that are black, say. What workers went through is not told.
+void tell_warnings(FarmClient& client, uint64_t id) {
+  v1::LogsRequest request;
+  request.set_job(id);
+  std::string first;
+  size_t count = 0;
+  const Outcome failure = client.logs(request, [&](const v1::LogLine& line) {
+    if (line.level() != v1::LOG_LEVEL_WARNING || !line.of_frame() || !line.worker().empty()) return;
+    if (++count == 1) {
+      first = fmt::format("frame {} {}", line.frame(), core::printable(line.text()));
+    }
+  });
+  if (failure || count == 0) return;  // the job is done all the same
+  const std::string others =
+      count > 1 ? fmt::format(" (and {}: hyades logs {})", core::counted(count - 1, "other"), id)
+                : "";
+  std::fprintf(stderr, "warning: %s%s\n", first.c_str(), others.c_str());
+}
+
 }  // namespace
 
 Outcome watch_job(FarmClient& client, uint64_t id, bool quiet, v1::Job* last, FilmDisplay* films,
@@ -148,7 +168,10 @@ Outcome watch_job(FarmClient& client, uint64_t id, bool quiet, v1::Job* last, Fi
     if (!outcome && !watcher.ended()) std::this_thread::sleep_for(kStreamEnded);
   }
   watcher.clear();
-  return outcome ? outcome : watcher.verdict();
+  if (outcome) return outcome;
+  const Outcome verdict = watcher.verdict();
+  if (!verdict && !quiet) tell_warnings(client, id);
+  return verdict;
 }
 
 }  // namespace hyades::cli

@@ -248,11 +248,12 @@ class SceneBuilder {
                                    [](const MediumDesc& medium) { return medium.emission; });
     if (glows) return;
     if (!scene_->lights.empty()) {
-      if (std::any_of(scene_->lights.begin(), scene_->lights.end(), shines)) return;
+      // Animations may well begin in the dark.
+      const bool still = job_.frames.first == job_.frames.last;
+      if (!still || std::any_of(scene_->lights.begin(), scene_->lights.end(), shines)) return;
       scene_->warnings.emplace_back(
           "its lights give nothing, the picture will be black: expected one that is brighter "
-          "than 0 in frame " +
-          std::to_string(frame_));
+          "than 0");
       return;
     }
     scene_->warnings.emplace_back(

@@ -79,7 +79,10 @@ TEST_F(Client, WatchEndsWithTheJob) {
                   event(v1::JOB_STATE_DONE, 100)};
   EXPECT_EQ(submit({"--watch"}).status, kDone);
   farm_.break_streams = 2;  // comes again after each break
-  EXPECT_EQ(run(watch_command, at({"1"})).status, kDone);
+  const Ran done = run(watch_command, at({"1"}));
+  EXPECT_EQ(done.status, kDone);
+  EXPECT_TRUE(has(done.err, "warning: frame 1 line 1?[2J (and 2 others: hyades logs 1)\n"))
+      << done.err;
 
   farm_.events.back() = event(v1::JOB_STATE_FAILED, 60);
   v1::Frame& frame = *farm_.events.back().add_changed();
