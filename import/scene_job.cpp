@@ -63,9 +63,13 @@ bool shines(const YamlNode& objects, double least) {
   });
 }
 
+bool has_lamps(const YamlNode& scene) {
+  return scene.find("environment") != nullptr || scene.find("lights") != nullptr;
+}
+
 /// Whether the scene has light of its own; of surfaces, what gives off more than `least`.
 bool has_light(const YamlNode& scene, double least) {
-  if (scene.find("environment") != nullptr || scene.find("lights") != nullptr) return true;
+  if (has_lamps(scene)) return true;
   const auto any_of = [&](const char* section, const auto& test) {
     const YamlNode& things = section_of_job(scene, section);
     return std::any_of(things.map.begin(), things.map.end(), [&](const YamlEntry& entry) {
@@ -271,6 +275,11 @@ Result<SceneJob> scene_job(AssetResolver& files, const SceneJobRequest& request)
     const YamlMap version{{"hyades", yaml_integer(1)}};
     job.tree = scene->find("hyades") != nullptr ? scene : with_sections(*version.node(), *scene);
     return job;
+  }
+  if (!told->emitters_are_lamps && !has_lamps(*scene) && has_light(*scene, kDim)) {
+    job.notes.push_back(request.scene +
+                        ": it has no lamps; what its surfaces emit, some of them more than paper "
+                        "in full light, is all the light that there is");
   }
   job.tree = staged(*scene, *told, safe_name(stem, "scene"), job.added);
   return job;

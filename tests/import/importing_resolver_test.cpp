@@ -108,7 +108,7 @@ TEST_F(Importing, AnySceneIsAJob) {
   std::vector<std::string> names;
   for (const AssetRecord& asset : assets.records()) names.push_back(asset.reference);
   EXPECT_THAT(names, ElementsAre("pic/wood.png", "quads.obj"));
-  EXPECT_THAT((*files)->notes(), IsEmpty());
+  EXPECT_THAT((*files)->notes(), ElementsAre(HasSubstr("it has no lamps")));
 }
 
 TEST_F(Importing, StreamsFilesOfTheDiskAndThoseThatAreMade) {
@@ -155,7 +155,7 @@ TEST_F(Importing, IsWrittenAsAJobToBeEdited) {
   EXPECT_THAT(text, testing::StartsWith(
                         "# quads.obj, as 'hyades import' tells it.\n"
                         "# Not of the scene, which has none: camera, objects.ground, environment\n"
-                        "hyades: 1\n"));
+                        "# ../../quads.obj: it has no lamps; what its surfaces emit, "));
   EXPECT_EQ(job.objects.at(0).mesh, "q_files/red_paint.ply");
   EXPECT_EQ(job.objects.at(0).part, "");
   EXPECT_THAT(text, HasSubstr("file: ../../pic/wood.png"));
@@ -214,6 +214,10 @@ TEST_F(Importing, LabelsThatEmitAreNoLamps) {
   EXPECT_THAT(job("s.obj"), testing::AllOf(HasSubstr("emi"), HasSubstr("key:")));
   write("s.mtl", "newmtl m\nKe 17 12 4\n");
   EXPECT_THAT(job("s.obj"), testing::Not(HasSubstr("key:")));
+  const auto lamp = JobFiles::open(path("s.obj"));
+  ASSERT_TRUE(lamp);
+  EXPECT_THAT((*lamp)->notes(),
+              ElementsAre(HasSubstr("s.obj: it has no lamps; what its surfaces")));
   write("s.pbrt",
         "Camera \"perspective\" WorldBegin AreaLightSource \"diffuse\" \"rgb L\" [0.5 0.5 0.5] "
         "Shape \"sphere\"");
