@@ -68,17 +68,18 @@ void check_names(ReadContext& context) {
 }
 
 /// Complains about the first thing that is made of too many others, each counted as often as it is
-/// used: chains need not be long to be endless in effect.
+/// used: chains need not be long to be endless in effect. True: there is none.
 template <class Desc>
-void check_parts(ReadContext& context, const std::vector<Desc>& list, ReferenceGraph& graph,
+bool check_parts(ReadContext& context, const std::vector<Desc>& list, ReferenceGraph& graph,
                  const char* noun) {
   for (const Desc& desc : list) {
     if (graph.unfolded(desc.name) <= kMostContributors) continue;
     context.complain(desc.where, fmt::format("{} '{}' is made of more than {} others, each counted "
                                              "as often as it is used",
                                              noun, desc.name, kMostContributors));
-    return;
+    return false;
   }
+  return true;
 }
 
 void check_texture_cycles(ReadContext& context) {
@@ -103,7 +104,8 @@ void check_texture_cycles(ReadContext& context) {
   check_parts(context, job.textures, graph, "texture");
 }
 
-void check_material_cycles(ReadContext& context) {
+/// True: no material is made of itself or of too many others.
+bool check_material_cycles(ReadContext& context) {
   const Job& job = context.job;
   ReferenceGraph graph(names_of(job.materials));
   for (size_t i = 0; i < job.materials.size(); ++i) {
@@ -117,14 +119,14 @@ void check_material_cycles(ReadContext& context) {
     context.complain(job.materials[i].where,
                      fmt::format("material '{}' is made of itself", job.materials[i].name));
   }
-  if (!cycles.empty()) return;
+  if (!cycles.empty()) return false;
   if (const auto i = graph.first_longer_than(kLongestChain)) {
     context.complain(job.materials[*i].where,
                      fmt::format("material '{}' is made of more than {} others in a row",
                                  job.materials[*i].name, kLongestChain));
-    return;
+    return false;
   }
-  check_parts(context, job.materials, graph, "material");
+  return check_parts(context, job.materials, graph, "material");
 }
 
 /// Calls `visit` with the name of every group that `objects` place and how many groups written in
@@ -180,11 +182,9 @@ Status may_name(const std::string& script, const std::string& reference, AssetRe
 
 /// Opens a file, or all files of a UDIM pattern or a sequence of meshes, so that whoever records
 /// what a job opens knows them.
-Status open_all(const Job& job, const FileUse& use, AssetResolver& assets) {
+Status open_all(const FileUse& use, AssetResolver& assets, MeshSequenceOpener& sequences) {
   const std::string& reference = use.reference;
-  if (use.per_frame && is_mesh_sequence(reference)) {
-    return open_mesh_sequence(job, reference, assets);
-  }
+  if (use.per_frame && is_mesh_sequence(reference)) return sequences.open(reference);
   std::vector<std::string> files = {reference};
   if (is_udim(reference)) {
     const auto tiles = udim_tiles(assets, reference);
@@ -200,10 +200,11 @@ Status open_all(const Job& job, const FileUse& use, AssetResolver& assets) {
 
 void check_files(ReadContext& context, AssetResolver& assets) {
   std::set<std::pair<std::string, std::string>> good;  // of scripts and files
+  MeshSequenceOpener sequences(context.job, assets);
   for (const FileUse& use : context.files) {
     if (good.contains({use.script, use.reference})) continue;
     const Status named = may_name(use.script, use.reference, assets);
-    const Status opened = named ? open_all(context.job, use, assets) : named;
+    const Status opened = named ? open_all(use, assets, sequences) : named;
     if (opened) {
       good.insert({use.script, use.reference});
     } else {
@@ -289,8 +290,7 @@ void check_atmosphere(ReadContext& context) {
 void check_job(ReadContext& context, AssetResolver& assets) {
   check_names(context);
   check_texture_cycles(context);
-  check_material_cycles(context);
-  check_two_sided(context);
+  if (check_material_cycles(context)) check_two_sided(context);
   check_emission(context);
   check_texture_colors(context);
   read_normal_maps_as_numbers(context);

@@ -35,20 +35,23 @@ bool lets_through(const MaterialDesc& m) {
                                    may_be_positive(principled->diffuse_transmission));
 }
 
-/// What `material` or what it is made of lets light through; null: nothing.
-const MaterialDesc* transparent_part(const MaterialsByName& all, const MaterialDesc& material) {
+/// What `material` or what it is made of lets light through. Null: nothing, and all of it is now
+/// among `opaque`, which is not looked at again: many may be made of the same.
+const MaterialDesc* transparent_part(const MaterialsByName& all, const MaterialDesc& material,
+                                     std::set<const MaterialDesc*>& opaque) {
   std::vector<const MaterialDesc*> left = {&material};
   std::set<const MaterialDesc*> seen;
   while (!left.empty()) {
     const MaterialDesc* m = left.back();
     left.pop_back();
-    if (!seen.insert(m).second) continue;
+    if (opaque.contains(m) || !seen.insert(m).second) continue;
     if (lets_through(*m)) return m;
     for (const std::string& name : names_in(*m, NameKind::material)) {
       const auto part = all.find(name);
       if (part != all.end()) left.push_back(part->second);
     }
   }
+  opaque.merge(seen);
   return nullptr;
 }
 
@@ -56,12 +59,14 @@ const MaterialDesc* transparent_part(const MaterialsByName& all, const MaterialD
 
 void check_two_sided(ReadContext& context) {
   const MaterialsByName all = materials_by_name(context.job);
+  std::set<const MaterialDesc*> opaque;
   for (const MaterialDesc& material : context.job.materials) {
     if (!std::holds_alternative<TwoSidedDesc>(material.kind)) continue;
+    if (context.diagnostics.full()) return;
     for (const std::string& name : names_in(material, NameKind::material)) {
       const auto part = all.find(name);
       if (part == all.end()) continue;
-      const MaterialDesc* clear = transparent_part(all, *part->second);
+      const MaterialDesc* clear = transparent_part(all, *part->second, opaque);
       if (clear == nullptr) continue;
       context.complain(material.where,
                        fmt::format("material '{}' is two-sided, but '{}' lets light through, "

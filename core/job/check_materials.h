@@ -5,7 +5,7 @@
 namespace hyades::core {
 
 /// Complains about two-sided materials of parts that let light through: it would meet another
-/// material from either side.
+/// material from either side. For jobs whose materials are made of few others.
 void check_two_sided(ReadContext& context);
 
 /// Complains about parts of materials that shine.

@@ -19,6 +19,8 @@ namespace hyades::core {
 
 namespace {
 
+constexpr size_t kFewKeys = 64;  ///< among which a key is looked up one by one
+
 /// Sections in which a key means something, where it means nothing here: "materials.conductor"
 /// for `roughness` in a lambert.
 std::string belongs_elsewhere(const std::string& section, const std::string& key) {
@@ -78,9 +80,16 @@ const YamlNode* MapReader::find_color(std::string_view key) {
               " (a colour such as \"#d8c8a8\" needs its quotes: an unquoted # starts a comment)");
 }
 
+const YamlEntry* MapReader::entry_of(std::string_view key) {
+  if (map_.map.size() <= kFewKeys) return map_.find(key);
+  if (!index_) index_.emplace(map_);
+  const size_t at = index_->find(key);
+  return at == KeyIndex::kNone ? nullptr : &map_.map[at];
+}
+
 const YamlNode* MapReader::find(std::string_view key, std::string_view hint) {
   ask(key);
-  const YamlEntry* entry = map_.find(key);
+  const YamlEntry* entry = entry_of(key);
   if (entry == nullptr) return nullptr;
   if (entry->value->kind == YamlNode::Kind::null) {
     has_empty_ = true;

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "core/base/text.h"
+#include "core/job/key_index.h"
 #include "core/job/kinds_of.h"
 #include "core/job/read_context.h"
 
@@ -232,6 +233,7 @@ class MapReader {
   /// Where keys are listed only: `key` may be absent.
   void forget_start(std::string_view key);
   const YamlNode* find(std::string_view key, std::string_view hint);
+  const YamlEntry* entry_of(std::string_view key);
   /// Finds the node of a colour; where it is empty, the complaint tells of the commonest reason.
   const YamlNode* find_color(std::string_view key);
 
@@ -250,6 +252,7 @@ class MapReader {
   std::string type_;  ///< the type whose keys are read; where none is told apart, the section
   SourceLocation where_;
   std::vector<std::string> asked_;
+  std::optional<KeyIndex> index_;  ///< of maps with many keys
   bool has_empty_ = false;
 };
 

@@ -5,11 +5,20 @@
 #include <cstddef>
 #include <limits>
 #include <system_error>
+#include <utility>
 
+#include "core/base/text.h"
 #include "core/job/layers.h"
 #include "core/job/output_path.h"
 
 namespace hyades::core {
+namespace {
+
+/// Ten times the files that a job may have on a farm. Patterns are short, so that very many could
+/// mean the same files.
+constexpr uint64_t kMostSequenceFiles = 1'000'000;
+
+}  // namespace
 
 bool is_mesh_sequence(const std::string& file) { return file.find('#') != std::string::npos; }
 
@@ -31,20 +40,31 @@ bool looks_at_next_frame(const Job& job) {
   return job.frames.shutter > 0.0F || needed_layers(job).motion;
 }
 
-Status open_mesh_sequence(const Job& job, const std::string& pattern, AssetResolver& assets) {
-  const bool ahead = looks_at_next_frame(job);
-  for (int64_t at = job.frames.first; at <= job.frames.last; at += job.frames.step) {
+MeshSequenceOpener::MeshSequenceOpener(const Job& job, AssetResolver& assets)
+    : frames_(job.frames), assets_(assets), ahead_(looks_at_next_frame(job)) {}
+
+Status MeshSequenceOpener::open(const std::string& pattern) {
+  for (int64_t at = frames_.first; at <= frames_.last; at += frames_.step) {
+    if (++looked_for_ > kMostSequenceFiles) {
+      return Error{"the job's sequences of meshes have more than " +
+                   format_count(kMostSequenceFiles) + " files"};
+    }
     const auto frame = static_cast<int32_t>(at);
-    if (const auto bytes = assets.open(output_path(pattern, frame)); !bytes) {
-      return bytes.error().in("frame " + std::to_string(frame));
-    }
-    if (!ahead || frame == std::numeric_limits<int32_t>::max()) continue;
-    const std::string next = output_path(pattern, frame + 1);
-    if (!assets.exists(next)) continue;
-    if (const auto bytes = assets.open(next); !bytes) {
-      return bytes.error().in("frame " + std::to_string(frame + 1));
-    }
+    if (auto opened = open_at(frame, output_path(pattern, frame)); !opened) return opened;
+    if (!ahead_ || frame == std::numeric_limits<int32_t>::max()) continue;
+    std::string next = output_path(pattern, frame + 1);
+    if (opened_.contains(next) || !assets_.exists(next)) continue;
+    if (auto opened = open_at(frame + 1, std::move(next)); !opened) return opened;
   }
+  return {};
+}
+
+Status MeshSequenceOpener::open_at(int32_t frame, std::string file) {
+  if (opened_.contains(file)) return {};
+  if (const auto bytes = assets_.open(file); !bytes) {
+    return bytes.error().in("frame " + std::to_string(frame));
+  }
+  opened_.insert(std::move(file));
   return {};
 }
 

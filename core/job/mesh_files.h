@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <set>
 #include <string>
 
 #include "core/base/assets.h"
@@ -23,9 +24,25 @@ bool is_of_sequence(const std::string& pattern, const std::string& file);
 /// shutter is open, or for the motion layer.
 bool looks_at_next_frame(const Job& job);
 
-/// Opens the files of a sequence that the job's frames look at, so that whoever records what a job
-/// opens knows them. The one after a frame may be missing, if it is no frame of the job: the mesh
-/// then stands still. Error: the first file that cannot be opened, with its frame.
-Status open_mesh_sequence(const Job& job, const std::string& pattern, AssetResolver& assets);
+/// Opens the files of a job's sequences, so that whoever records what a job opens knows them. Each
+/// is opened once, however many sequences it belongs to.
+class MeshSequenceOpener {
+ public:
+  MeshSequenceOpener(const Job& job, AssetResolver& assets);
+
+  /// The files of `pattern` that the job's frames look at. The one after a frame may be missing, if
+  /// it is no frame of the job: the mesh then stands still. Error: the first file that cannot be
+  /// opened, with its frame; or all sequences together have more than a million files.
+  Status open(const std::string& pattern);
+
+ private:
+  Status open_at(int32_t frame, std::string file);
+
+  const FramesDesc& frames_;
+  AssetResolver& assets_;
+  bool ahead_;  ///< looks_at_next_frame
+  std::set<std::string> opened_;
+  uint64_t looked_for_ = 0;  ///< of all sequences
+};
 
 }  // namespace hyades::core

@@ -5,11 +5,16 @@
 #include <set>
 #include <utility>
 
+#include "core/base/assets.h"
+
 namespace hyades::core {
 namespace {
 
 constexpr std::string_view kSpace = " \t\r";
+constexpr std::string_view kTransform = "<FileTransform>";
 constexpr size_t kMostFiles = 10'000;
+
+bool has_variable(const std::string& name) { return name.find_first_of("$%") != name.npos; }
 
 std::string_view trimmed(std::string_view text) {
   const size_t begin = text.find_first_not_of(kSpace);
@@ -66,24 +71,27 @@ std::vector<std::string> search_path(std::string_view config) {
 std::vector<std::string> ocio_file_candidates(std::string_view config) {
   std::vector<std::string> candidates;
   std::set<std::string> seen;
-  const auto add = [&](std::string path) {
-    if (candidates.size() < kMostFiles && seen.insert(path).second) {
-      candidates.push_back(std::move(path));
-    }
-  };
-  const std::vector<std::string> folders = search_path(config);
-  for (std::string_view rest = after(config, "<FileTransform>"); !rest.empty();
-       rest = after(rest, "<FileTransform>")) {
+  std::set<std::string> files;  // each is looked for in all folders, once
+  size_t tried = 0;
+  std::vector<std::string> folders = search_path(config);
+  // No file has a longer name; without a bound, few of them in many folders would fill the memory.
+  std::erase_if(folders, [](const std::string& folder) {
+    return has_variable(folder) || folder.size() > kLongestFileName;
+  });
+  for (std::string_view rest = after(config, kTransform); !rest.empty();
+       rest = after(rest, kTransform)) {
     // Its own keys end where the next transform begins.
-    const std::string_view own = rest.substr(0, rest.find("!<"));
+    std::string_view own = rest.substr(0, rest.find(kTransform));
+    own = own.substr(0, own.find("!<"));
     const std::string file = scalar(after(own, "src:"));
-    if (file.empty() || file.find_first_of("$%") != std::string::npos) continue;
-    if (file.front() == '/') {
-      add(file);
-      continue;
-    }
-    for (const std::string& folder : folders) {
-      if (folder.find_first_of("$%") == std::string::npos) add(folder + "/" + file);
+    if (file.empty() || file.size() > kLongestFileName || has_variable(file)) continue;
+    if (!files.insert(file).second) continue;
+    const bool absolute = file.front() == '/';
+    const size_t places = absolute ? 1 : folders.size();
+    for (size_t i = 0; i < places; ++i) {
+      if (++tried > kMostFiles) return candidates;
+      std::string path = absolute ? file : folders[i] + "/" + file;
+      if (seen.insert(path).second) candidates.push_back(std::move(path));
     }
   }
   return candidates;

@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <set>
 #include <string>
 #include <vector>
@@ -49,8 +50,10 @@ struct ReadContext {
   bool in_shutter = false;  ///< what is read now counts all the while the shutter is open
   Origins origins;          ///< of what the job says
   std::map<std::string, YamlPtr> materials;  ///< as written, `like` followed; for overrides
-  bool files_missing = false;                ///< files that names may stand in could not be read
-  KeyListing* listing = nullptr;             ///< set: only collect which keys the readers know
+  /// Those of light_groups_of(job), once somebody has asked for them (check_layer).
+  std::optional<std::vector<std::string>> light_groups;
+  bool files_missing = false;     ///< files that names may stand in could not be read
+  KeyListing* listing = nullptr;  ///< set: only collect which keys the readers know
 
   /// Adds a complaint, once (a node that `like:` or an alias shares is read several times).
   void complain(const SourceLocation& where, const std::string& message);

@@ -18,6 +18,14 @@ namespace {
 
 constexpr size_t kMostGroups = 32;  ///< that one film tells apart
 
+bool is_layer(const std::string& name, const std::vector<std::string>& groups) {
+  const auto plain = layer_names();
+  if (std::find(plain.begin(), plain.end(), name) != plain.end()) return true;
+  if (groups.empty() || !name.starts_with(kGroupPrefix)) return false;
+  const std::string group = name.substr(kGroupPrefix.size());
+  return group == kRestGroup || std::binary_search(groups.begin(), groups.end(), group);
+}
+
 /// What a layer may be called in this job.
 std::vector<std::string> names_of_layers(const std::vector<std::string>& groups) {
   const auto plain = layer_names();
@@ -30,9 +38,13 @@ std::vector<std::string> names_of_layers(const std::vector<std::string>& groups)
 }  // namespace
 
 bool check_layer(MapReader& reader, const YamlNode& item) {
-  const std::vector<std::string> groups = light_groups_of(reader.context().job);
-  const std::vector<std::string> names = names_of_layers(groups);
-  if (std::find(names.begin(), names.end(), item.scalar) == names.end()) {
+  ReadContext& context = reader.context();
+  if (!context.light_groups) context.light_groups = light_groups_of(context.job);
+  const std::vector<std::string>& groups = *context.light_groups;
+  if (!is_layer(item.scalar, groups)) {
+    // Each complaint looks through all groups.
+    if (context.diagnostics.full() || !context.spend(groups.size() + 1, item.where)) return false;
+    const std::vector<std::string> names = names_of_layers(groups);
     const std::string hint = suggest(item.scalar, names);
     reader.complain(item.where,
                     fmt::format("layer is {}{}", describe(item),

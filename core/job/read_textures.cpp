@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <set>
 #include <span>
 #include <utility>
 #include <vector>
@@ -47,6 +48,7 @@ void MapReader::stops(std::string_view key, std::vector<textures::Stop>& stops) 
   }
   MapReader map(context_, *node, fmt::format("{} of {}", key, what_),
                 fmt::format("{}.{}", path_, key), section_);
+  std::set<float> places;
   for (const auto& entry : node->map) {
     textures::Stop stop;
     double at = 0.0;
@@ -57,9 +59,9 @@ void MapReader::stops(std::string_view key, std::vector<textures::Stop>& stops) 
     }
     stop.at = static_cast<float>(at);
     map.color_input(entry.key, stop.color, kNotNegative);
-    const bool twice = std::any_of(stops.begin(), stops.end(),
-                                   [&](const auto& other) { return other.at == stop.at; });
-    if (twice) complain(entry.value->where, fmt::format("two stops stand at {}", entry.key));
+    if (!places.insert(stop.at).second) {
+      complain(entry.value->where, fmt::format("two stops stand at {}", entry.key));
+    }
     stops.push_back(std::move(stop));
   }
 }

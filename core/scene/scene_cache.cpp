@@ -53,16 +53,17 @@ Result<std::shared_ptr<const TriangleMesh>> SceneCache::read(const std::string& 
   } else {
     const auto all = parts_of(file, of_frames);
     if (!all) return all.error();
-    std::vector<std::string> names;
-    for (const MeshPart& each : (*all)->parts) {
-      names.push_back(each.name);
-      if (each.name == use.part) mesh = std::make_shared<TriangleMesh>(*each.mesh);
-    }
-    if (mesh == nullptr) {
+    const std::vector<MeshPart>& parts = (*all)->parts;
+    const auto part = std::find_if(parts.begin(), parts.end(),
+                                   [&](const MeshPart& each) { return each.name == use.part; });
+    if (part == parts.end()) {
+      std::vector<std::string> names;
+      for (const MeshPart& each : parts) names.push_back(each.name);
       const std::string hint = did_you_mean(use.part, names);
       return Error{file + ": it has no material '" + use.part + "'" +
                    (hint.empty() ? "; there is " + join_names(names) : hint)};
     }
+    mesh = std::make_shared<TriangleMesh>(*part->mesh);
     mesh->name = file;
     finish_mesh(*mesh);  // a copy has no padding
   }

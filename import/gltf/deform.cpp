@@ -12,10 +12,6 @@ namespace hyades::core {
 
 namespace {
 
-/// Sparse targets have many vertices for few bytes; beyond this many per byte of the file a target
-/// is not meant seriously.
-constexpr size_t kMostPerByte = 64;
-
 Status add_target(const GltfModel& model, const GltfPrimitive& primitive,
                   const GltfAttributes& target, const char* name, float weight, float* to,
                   size_t vertices, size_t step) {
@@ -54,7 +50,7 @@ Vec3 turned_normal(const Mat3& matrix, const Vec3& normal) {
 Status morph(const GltfModel& model, const GltfPrimitive& primitive,
              const std::vector<float>& weights, GltfGeometry& geometry) {
   const size_t n = geometry.positions.size();
-  if (primitive.targets.size() * n > kMostPerByte * (model.buffer_bytes + 1024)) {
+  if (model.is_too_much(primitive.targets.size() * n)) {
     return model.error(
         fmt::format("{} has {} targets of {} vertices, which is too much for {} "
                     "bytes",

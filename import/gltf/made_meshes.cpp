@@ -28,6 +28,23 @@ bool shapes(const GltfNode& node, const GltfPrimitive& primitive) {
   return node.skin >= 0 || !primitive.targets.empty();
 }
 
+/// The vertices that are made of a primitive, or its triangles where these are more. Packed ones
+/// say it of themselves; they count as much as the bytes of their code at least.
+uint64_t elements_of(const GltfModel& model, const GltfPrimitive& primitive) {
+  const auto count = [&](int index) {
+    if (index < 0) return size_t{0};
+    const GltfAccessor& accessor = model.accessors[static_cast<size_t>(index)];
+    // One of zeros that is longer is refused by who reads it.
+    return accessor.view < 0 ? std::min(accessor.count, model.buffer_bytes) : accessor.count;
+  };
+  const auto position = primitive.attributes.find("POSITION");
+  const size_t vertices = position == primitive.attributes.end() ? 0 : count(position->second);
+  const size_t corners = count(primitive.indices);
+  const size_t code =
+      primitive.draco ? model.views[static_cast<size_t>(primitive.draco->view)].bytes.size() : 0;
+  return std::max({vertices, primitive.mode == 4 ? corners / 3 : corners, code});
+}
+
 Result<std::vector<Mat4>> joint_matrices(const GltfModel& model, const GltfSkin& skin,
                                          const GltfClip* clip, double time) {
   const GltfPose pose = pose_at(model, clip, time);
@@ -111,6 +128,7 @@ GltfMeshFiles::GltfMeshFiles(std::shared_ptr<const GltfModel> model) : model_(st
       const std::string base = safe_name(mesh.name.empty() ? at.name : mesh.name, "mesh");
       const std::string part = mesh.primitives.size() > 1 ? "-" + std::to_string(p + 1) : "";
       files_.push_back({names.add(base + part), at.mesh, p, own ? node : -1});
+      elements_ += elements_of(*model_, mesh.primitives[p]);
       by_name_[files_.back().name] = files_.size() - 1;
       of_node_[{node, p}] = files_.size() - 1;
       if (!own) unshaped[{at.mesh, p}] = files_.size() - 1;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -28,6 +29,9 @@ struct GltfMeshFile {
 class GltfMeshFiles {
  public:
   explicit GltfMeshFiles(std::shared_ptr<const GltfModel> model);
+
+  /// Vertices or triangles of all files together, as far as accessors say it.
+  uint64_t elements() const { return elements_; }
 
   /// The file of a primitive of a node's mesh.
   const GltfMeshFile& file(int node, size_t primitive) const;
@@ -58,6 +62,7 @@ class GltfMeshFiles {
  private:
   std::shared_ptr<const GltfModel> model_;
   std::vector<GltfMeshFile> files_;
+  uint64_t elements_ = 0;
   std::map<std::string, size_t> by_name_;
   std::map<std::pair<int, size_t>, size_t> of_node_;
   std::vector<std::string> clip_folders_;

@@ -134,6 +134,11 @@ struct GltfImage {
   std::string file;  ///< this file beside the scene's
 };
 
+/// Vertices or triangles of meshes and their targets that are made of a file may be this many per
+/// byte of its buffers: some accessors are shared, or sparse, but beyond it a file is not meant
+/// seriously.
+inline constexpr size_t kMostElementsPerByte = 64;
+
 struct GltfModel {
   std::string file;  ///< for messages
   std::shared_ptr<const nlohmann::json> json;
@@ -151,6 +156,11 @@ struct GltfModel {
   /// The whole document; complaints go to `trouble`.
   JsonValue root(JsonTrouble& trouble) const { return {json.get(), "", trouble}; }
   Error error(const std::string& what) const { return Error{file + ": " + what}; }
+
+  /// Whether so many vertices or triangles are too many for what the file holds.
+  bool is_too_much(uint64_t elements) const {
+    return elements > kMostElementsPerByte * (uint64_t{buffer_bytes} + 1024);
+  }
 };
 
 }  // namespace hyades::core

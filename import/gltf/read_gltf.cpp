@@ -102,6 +102,11 @@ Result<SceneSections> GltfSource::sections(const SceneRequest& request) const {
   SceneSections out;
   const auto chosen = choose(request.animation);
   if (!chosen) return chosen.error();
+  if (model_->is_too_much(files_.elements())) {
+    return model_->error(fmt::format(
+        "its meshes have {} vertices or triangles together, which is too much for {} bytes",
+        files_.elements(), model_->buffer_bytes));
+  }
   std::vector<std::string> notes = model_->notes;
   GltfStage stage{*model_, request, files_, places_, chosen->clip.get(), chosen->index, {}, notes};
   stage.frames.fps = request.fps;

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <filesystem>
 #include <map>
+#include <set>
 #include <string_view>
 #include <utility>
 #include <vector>
@@ -135,6 +136,23 @@ Status read_library(AssetResolver& files, const std::string& name, ObjScene& sce
   return {};
 }
 
+/// The libraries of all lines, each once: where it is named for the last time, as the last material
+/// of a name counts.
+std::vector<std::string> libraries_of(AssetResolver& files, const std::vector<std::string>& lines,
+                                      const std::string& scene) {
+  std::vector<std::string> names;
+  for (const std::string& line : lines) {
+    for (std::string& name : libraries_of(files, line, scene)) names.push_back(std::move(name));
+  }
+  std::set<std::string> known;
+  std::vector<std::string> last;
+  for (auto name = names.rbegin(); name != names.rend(); ++name) {
+    if (known.insert(resolve_reference(*name, scene)).second) last.push_back(std::move(*name));
+  }
+  std::reverse(last.begin(), last.end());
+  return last;
+}
+
 void note_what_is_left_out(const MeshParts& mesh, ObjScene& scene) {
   for (const Part& part : scene.parts) {
     // That a library is missing has been told, and a mesh may have none.
@@ -166,10 +184,8 @@ Result<std::shared_ptr<const SceneSource>> read_obj_scene(AssetResolver& files,
     bounds.include(part.mesh->bounds);
   }
   if (bounds.empty()) return Error{reference + ": the mesh has no triangles"};
-  for (const std::string& line : mesh->libraries) {
-    for (const std::string& library : libraries_of(files, line, reference)) {
-      if (auto read = read_library(files, library, *scene); !read) return read.error();
-    }
+  for (const std::string& library : libraries_of(files, mesh->libraries, reference)) {
+    if (auto read = read_library(files, library, *scene); !read) return read.error();
   }
   note_what_is_left_out(*mesh, *scene);
   return std::shared_ptr<const SceneSource>(std::move(scene));

@@ -6,12 +6,25 @@
 #include <utility>
 #include <vector>
 
+#include "core/base/text.h"
 #include "import/pbrt/transforms.h"
 #include "import/within_folder.h"
 
 namespace hyades::core::pbrt {
 
 namespace {
+
+/// Vertices or triangles of all meshes that are made of a scene, which takes up to 3 GB, and more
+/// of long files: their curves and patches become up to 16 for each byte, and so do triangles that
+/// are subdivided four times. A short line may ask for millions.
+constexpr uint64_t kMostElements = uint64_t{1} << 24;
+constexpr uint64_t kMostElementsPerByte = 16;
+
+uint64_t bytes_of(const LoadedScene& loaded) {
+  uint64_t bytes = loaded.scene.bytes;
+  for (const auto& [name, file] : loaded.files) bytes += file.size();
+  return bytes;
+}
 
 /// Whether a picture of the scene's camera, seen as right-handed axes have it, is the wrong way
 /// round. A camera of perspective has x to the right, y up and z forward, which are left-handed;
@@ -30,9 +43,20 @@ Context::Context(const LoadedScene& from, const SceneRequest& asked)
       texture_names("texture", asked.prefix),
       material_names("material", asked.prefix),
       medium_names("medium", asked.prefix),
-      light_names("light", asked.prefix) {
+      light_names("light", asked.prefix),
+      most_made_(kMostElements + kMostElementsPerByte * bytes_of(from)) {
   report.notes = scene.notes;
   if (needs_mirror(scene)) to_job = scaling(Vec3d(-1.0, 1.0, 1.0));
+}
+
+bool Context::may_make(uint64_t elements, const Place& place) {
+  if (made_ > most_made_) return false;
+  made_ += elements;
+  if (made_ <= most_made_) return true;
+  report.error(place, "the meshes that are made of the scene up to here have more than " +
+                          format_count(most_made_) +
+                          " triangles or vertices, which is too much for what its files hold");
+  return false;
 }
 
 std::string Context::beside(const std::string& reference, const Place& place) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <functional>
 #include <map>
 #include <optional>
@@ -46,6 +47,10 @@ struct Context {
   };
   std::map<std::string, LightPicture> light_pictures;
 
+  /// Counts vertices or triangles of meshes that are made. False, after one error, where they are
+  /// too many for what the scene's files hold.
+  bool may_make(uint64_t elements, const Place& place);
+
   Names texture_names, material_names, medium_names, light_names;
   YamlMap textures, materials, media, lights;
 
@@ -53,6 +58,10 @@ struct Context {
   /// and an error of the report, where it is none or there is no such file.
   std::string beside(const std::string& reference, const Place& place);
   std::vector<std::string> files;  ///< SceneSections::files
+
+ private:
+  uint64_t made_ = 0;
+  uint64_t most_made_;
 };
 
 /// Textures or materials that are made of each other: as many in a row as jobs may have.

@@ -112,10 +112,10 @@ void join_rows(TriangleMesh& mesh, uint32_t across) {
 
 }  // namespace
 
-Status check_curve(const ShapeEntity& shape, Report& report) {
+Result<uint64_t> check_curve(const ShapeEntity& shape, Report& report) {
   auto curve = curve_of(shape, report);
   if (!curve) return curve.error();
-  return {};
+  return uint64_t{2} * kPieces * (curve->normals.empty() ? kSides : 1) * curve->segments.size();
 }
 
 Result<TriangleMesh> curve_mesh(const ShapeEntity& shape, Report& report) {

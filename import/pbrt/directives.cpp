@@ -15,6 +15,7 @@ namespace hyades::core::pbrt {
 namespace {
 
 constexpr size_t kDeepestAttributes = 4096;
+constexpr size_t kMostAttributes = 256;  ///< of shapes, say, that hold at a time: each has them all
 constexpr size_t kMostShapes = size_t{1} << 22;     ///< objects of a job
 constexpr size_t kMostInstances = size_t{1} << 17;  ///< instances that are objects of a job
 
@@ -236,8 +237,20 @@ Status Directives::attribute() {
   auto own = read_parameters(*tokens_, state_.space, true);
   if (!own) return own.error();
   const size_t index = static_cast<size_t>(which - names.begin());
-  state_.attributes[index] = std::make_shared<const Parameters>(
-      state_.with_attributes(std::move(*own), static_cast<Target>(index)));
+  auto kept = std::make_shared<Parameters>();
+  for (const ParameterPtr& p :
+       state_.with_attributes(std::move(*own), static_cast<Target>(index))) {
+    // Nobody finds one behind another of the same name and type.
+    const bool hidden = std::any_of(kept->begin(), kept->end(), [&](const ParameterPtr& other) {
+      return other->name == p->name && other->type == p->type;
+    });
+    if (!hidden) kept->push_back(p);
+    if (kept->size() > kMostAttributes) {
+      return error("'" + target + "' has more than " + std::to_string(kMostAttributes) +
+                   " attributes here");
+    }
+  }
+  state_.attributes[index] = std::move(kept);
   return {};
 }
 

@@ -143,11 +143,13 @@ Status subdivide(TriangleMesh& mesh) {
 
 }  // namespace
 
-Status check_subdivision(const ShapeEntity& shape, Report& report) {
+Result<uint64_t> check_subdivision(const ShapeEntity& shape, Report& report) {
   ParameterReader reader(shape.parameters, shape.place, report);
   const int levels = reader.integer("levels", 3);
-  uint64_t triangles = reader.integers("indices", 3).size() / 3;
   if (levels < 0) return shape.place.error("levels are below 0");
+  auto base = control_mesh(shape, report);
+  if (!base) return base.error();
+  uint64_t triangles = base->triangles.size();
   for (int i = 0; i < levels; ++i) {
     triangles *= 4;
     if (triangles > kMostTriangles) {
@@ -155,15 +157,13 @@ Status check_subdivision(const ShapeEntity& shape, Report& report) {
                                " triangles");
     }
   }
-  auto base = control_mesh(shape, report);
-  if (!base) return base.error();
   auto edges = edges_of(base->triangles);
   if (!edges) return shape.place.error(edges.error().message);
-  return {};
+  return triangles;
 }
 
 Result<TriangleMesh> subdivided_mesh(const ShapeEntity& shape, Report& report) {
-  if (Status s = check_subdivision(shape, report); !s) return s.error();
+  if (const auto checked = check_subdivision(shape, report); !checked) return checked.error();
   auto mesh = control_mesh(shape, report);
   if (!mesh) return mesh;
   mesh->normals.clear();

@@ -18,6 +18,8 @@ namespace {
 
 using Triangle = std::array<uint32_t, 3>;
 
+constexpr uint32_t kCuts = 8;  ///< of a bent patch, along each side
+
 /// The lists that meshes are made of, with indices in range.
 struct Lists {
   std::span<const float> positions;  ///< 3 each
@@ -124,7 +126,7 @@ Result<TriangleMesh> bilinear_mesh(const ShapeEntity& shape, Report& report) {
     const float size =
         glm::length(p[corner[3]] - p[corner[0]]) + glm::length(p[corner[2]] - p[corner[1]]);
     // Parallelograms are two triangles; what is bent is cut.
-    const uint32_t cuts = glm::length(twist) > 1e-4F * size ? 8 : 1;
+    const uint32_t cuts = glm::length(twist) > 1e-4F * size ? kCuts : 1;
     if (mesh.positions.size() > std::numeric_limits<int32_t>::max() - 100) {
       return shape.place.error("the patches are too many");
     }
@@ -183,15 +185,18 @@ Result<TriangleMesh> mesh_of(const ShapeEntity& shape, Report& report) {
   return mesh;
 }
 
-Status check_mesh(const ShapeEntity& shape, Report& report) {
-  if (shape.type == "trianglemesh" || shape.type == "bilinearmesh") {
-    auto lists = lists_of(shape, shape.type == "trianglemesh" ? 3 : 4, report);
+Result<uint64_t> check_mesh(const ShapeEntity& shape, Report& report) {
+  const bool patches = shape.type == "bilinearmesh";
+  if (patches || shape.type == "trianglemesh") {
+    const size_t corners = patches ? 4 : 3;
+    auto lists = lists_of(shape, corners, report);
     if (!lists) return lists.error();
-    return {};
+    const uint64_t each = patches ? uint64_t{2} * kCuts * kCuts : 1;
+    return std::max<uint64_t>(each * lists->indices.size() / corners, lists->positions.size() / 3);
   }
   if (shape.type == "loopsubdiv") return check_subdivision(shape, report);
   if (shape.type == "curve") return check_curve(shape, report);
-  return {};
+  return tessellated_triangles(shape);
 }
 
 void reverse(TriangleMesh& mesh) {

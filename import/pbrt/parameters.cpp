@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <set>
 
 namespace hyades::core::pbrt {
 namespace {
@@ -107,17 +108,14 @@ std::span<const int32_t> ParameterReader::integers(std::string_view name, size_t
 }
 
 void ParameterReader::note_unused() const {
+  std::set<std::string_view> read;
   for (size_t i = 0; i < parameters_.size(); ++i) {
-    const Parameter& p = *parameters_[i];
-    if (read_[i] || p.inherited) continue;
+    if (read_[i]) read.insert(parameters_[i]->name);
+  }
+  for (const ParameterPtr& p : parameters_) {
     // Another one of the same name that was read hides it.
-    bool hidden = false;
-    for (size_t k = 0; k < parameters_.size() && !hidden; ++k) {
-      hidden = read_[k] && parameters_[k]->name == p.name;
-    }
-    if (!hidden) {
-      report_.note(p.place, "parameter '" + p.type + " " + p.name + "' is left out");
-    }
+    if (p->inherited || read.contains(p->name)) continue;
+    report_.note(p->place, "parameter '" + p->type + " " + p->name + "' is left out");
   }
 }
 

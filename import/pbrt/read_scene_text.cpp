@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <set>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -63,6 +64,7 @@ class TextReader : public Includer {
     if (text_ > kMostText) {
       return Error{path + ": the scene's files have more than " + format_bytes(kMostText)};
     }
+    if (known_.insert(path).second) scene_.bytes += bytes->size();
     open_.push_back(path);
     Tokenizer tokens(std::string_view(bytes->chars(), bytes->size()), path);
     Status s = directives_.read(tokens);
@@ -74,6 +76,7 @@ class TextReader : public Includer {
   Scene scene_;
   Directives directives_;
   std::vector<std::string> open_;  ///< files that are being read
+  std::set<std::string> known_;    ///< all files
   size_t includes_ = 0;
   uint64_t text_ = 0;
   bool opened_ = false;

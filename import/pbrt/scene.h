@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -81,6 +82,7 @@ struct Scene {
   std::vector<ObjectDefinition> objects;
   std::vector<ObjectInstance> instances;
   std::vector<std::string> notes;  ///< of reading
+  uint64_t bytes = 0;              ///< of its files, each counted once
 };
 
 }  // namespace hyades::core::pbrt

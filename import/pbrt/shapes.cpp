@@ -18,6 +18,8 @@
 namespace hyades::core::pbrt {
 namespace {
 
+constexpr size_t kBytesPerTriangle = 16;  ///< of a PLY file, about
+
 /// Our spheres, disks and cylinders stand around y, pbrt's around z.
 Mat4d z_for_y() { return rotation(90.0, Vec3d(1.0, 0.0, 0.0)); }
 
@@ -38,6 +40,16 @@ void skip_known(ParameterReader& reader) {
 Shapes::Shapes(Context& context, Materials& materials, Textures& textures, Media& media)
     : context_(context), materials_(materials), textures_(textures), media_(media) {}
 
+bool Shapes::can_be_made(const ShapeEntity& shape) {
+  // Very many may share a long list, and are looked through only as long as it matters.
+  const bool refused = context_.report.errors.size() >= Report::kMostErrors;
+  if (refused || !context_.may_make(0, shape.place)) return false;
+  const auto elements = check_mesh(shape, context_.report);
+  if (elements) return context_.may_make(*elements, shape.place);
+  context_.report.errors.push_back(elements.error().message);
+  return false;
+}
+
 YamlPtr Shapes::geometry(const ShapeEntity& shape, const std::string& file, bool sided,
                          Mat4d& before, std::string& wish) {
   ParameterReader reader = read(context_, shape);
@@ -50,10 +62,7 @@ YamlPtr Shapes::geometry(const ShapeEntity& shape, const std::string& file, bool
     return false;
   };
   if (is_made_mesh(shape)) {
-    if (Status s = check_mesh(shape, context_.report); !s) {
-      context_.report.errors.push_back(s.error().message);
-      return nullptr;
-    }
+    if (!can_be_made(shape)) return nullptr;
     if (reader.find("faceIndices") != nullptr) {
       context_.report.note(shape.place, "faceIndices are left out");
     }
@@ -67,7 +76,13 @@ YamlPtr Shapes::geometry(const ShapeEntity& shape, const std::string& file, bool
     const std::string beside = context_.beside(reference, shape.place);
     if (beside.empty()) return nullptr;
     wish = stem(reference);
-    out.put("mesh", yaml_text(shape.reversed && sided ? made : beside));
+    const bool turned = shape.reversed && sided;
+    const auto whole = context_.loaded.files.find(reference);
+    if (turned && whole != context_.loaded.files.end() &&
+        !context_.may_make(whole->second.size() / kBytesPerTriangle, shape.place)) {
+      return nullptr;
+    }
+    out.put("mesh", yaml_text(turned ? made : beside));
     if (const Parameter* p = reader.find("texture", "displacement")) {
       const Textures::Height height = textures_.height(p->texts[0], p->place);
       const double stretch = std::cbrt(std::abs(linear_determinant(shape.to_world.at[0])));
@@ -135,11 +150,7 @@ YamlPtr Shapes::objects(const std::vector<ShapeEntity>& shapes, const std::strin
     Mat4d before(1.0);
     const std::string file = made + mesh_run_name(i, run);
     if (run > 1) {
-      for (size_t k = i + 1; k < i + run; ++k) {
-        if (Status ok = check_mesh(shapes[k], context_.report); !ok) {
-          context_.report.errors.push_back(ok.error().message);
-        }
-      }
+      for (size_t k = i + 1; k < i + run; ++k) can_be_made(shapes[k]);
     }
     const YamlPtr geometry = this->geometry(shape, file, shines || material.sided, before, wish);
     if (geometry == nullptr) continue;

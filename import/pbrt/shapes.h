@@ -18,6 +18,8 @@ class Shapes {
   YamlPtr objects(const std::vector<ShapeEntity>& shapes, const std::string& made, bool in_group);
 
  private:
+  /// Whether mesh_of() makes it, and may; an error of the report where not.
+  bool can_be_made(const ShapeEntity& shape);
   /// The object without its material, or null. `before` becomes what its own shape is moved by.
   YamlPtr geometry(const ShapeEntity& shape, const std::string& file, bool sided, Mat4d& before,
                    std::string& wish);

@@ -12,6 +12,7 @@ namespace hyades::core::pbrt {
 namespace {
 
 constexpr int kAround = 128;
+constexpr int kSphereRows = kAround / 2;
 
 struct Parametric {
   Vec3d position;
@@ -70,6 +71,10 @@ Ranges extent_of(const ShapeEntity& shape, Report& report) {
   return e;
 }
 
+int columns_of(const Ranges& e) {
+  return std::max(1, static_cast<int>(std::ceil(kAround * e.turn / (2 * std::numbers::pi))));
+}
+
 }  // namespace
 
 bool needs_tessellation(const ShapeEntity& shape) {
@@ -82,16 +87,21 @@ bool needs_tessellation(const ShapeEntity& shape) {
   return shape.reversed || e.low > -e.radius || e.high < e.radius;
 }
 
+uint64_t tessellated_triangles(const ShapeEntity& shape) {
+  Report unheard;
+  const auto columns = static_cast<uint64_t>(columns_of(extent_of(shape, unheard)));
+  return 2 * columns * (shape.type == "sphere" ? kSphereRows : 1);
+}
+
 Result<TriangleMesh> tessellated_mesh(const ShapeEntity& shape, Report& report) {
   const Ranges e = extent_of(shape, report);
   if (!(e.radius > 0.0)) return shape.place.error("the radius is not above 0");
   if (!(e.turn > 0.0)) return shape.place.error("phimax is not above 0");
-  const int columns =
-      std::max(1, static_cast<int>(std::ceil(kAround * e.turn / (2 * std::numbers::pi))));
+  const int columns = columns_of(e);
   if (shape.type == "sphere") {
     const double first = std::acos(std::clamp(e.low / e.radius, -1.0, 1.0));
     const double last = std::acos(std::clamp(e.high / e.radius, -1.0, 1.0));
-    return grid(columns, kAround / 2, [&](double u, double v) {
+    return grid(columns, kSphereRows, [&](double u, double v) {
       const double theta = std::lerp(first, last, v);
       const Vec3d n(std::sin(theta) * std::cos(u * e.turn), std::sin(theta) * std::sin(u * e.turn),
                     std::cos(theta));

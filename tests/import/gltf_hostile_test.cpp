@@ -116,6 +116,42 @@ TEST(GltfHostile, CountsAreCheckedBeforeMemoryIsTaken) {
   EXPECT_THAT(trouble(b), HasSubstr("accessors[0].count is -4"));
 }
 
+/// Each primitive is a mesh of its own.
+TEST(GltfHostile, OneListOfManyPrimitives) {
+  for (const bool indexed : {false, true}) {
+    GltfBuilder b;
+    nlohmann::json large;
+    if (indexed) {
+      large = b.square();
+      large["indices"] = b.accessor<uint8_t>(std::vector<uint8_t>(30'000, 1), "SCALAR");
+    } else {
+      large["attributes"]["POSITION"] = b.floats(std::vector<float>(30'000, 1.0F), "VEC3");
+    }
+    const int mesh = b.mesh(large);
+    nlohmann::json& primitives = b.json["meshes"][static_cast<size_t>(mesh)]["primitives"];
+    for (int i = 1; i < 150; ++i) primitives.push_back(large);
+    b.add("nodes", {{"mesh", mesh}});
+    EXPECT_THAT(job_of(b), HasSubstr("-150.ply"));
+    for (int i = 150; i < 1000; ++i) primitives.push_back(large);
+    EXPECT_THAT(job_of(b), HasSubstr("a.glb: its meshes have 10000000 vertices or triangles "
+                                     "together, which is too much for "));
+  }
+}
+
+/// So is what each node shapes.
+TEST(GltfHostile, OneMeshOfManySkins) {
+  GltfBuilder b;
+  nlohmann::json large;
+  large["attributes"]["POSITION"] = b.floats(std::vector<float>(30'000, 1.0F), "VEC3");
+  const int mesh = b.mesh(large);
+  b.add("nodes", {{"name", "joint"}});
+  b.add("skins", {{"joints", {0}}});
+  for (int i = 0; i < 1000; ++i) b.add("nodes", {{"mesh", mesh}});
+  EXPECT_THAT(job_of(b), HasSubstr("objects:"));
+  for (int i = 1; i <= 1000; ++i) b.json["nodes"][static_cast<size_t>(i)]["skin"] = 0;
+  EXPECT_THAT(job_of(b), HasSubstr("its meshes have 10000000 vertices or triangles together"));
+}
+
 TEST(GltfHostile, AFileThatIsNamedManyTimesCountsOnce) {
   GltfBuilder b = one_square();
   b.json["accessors"][0].erase("bufferView");

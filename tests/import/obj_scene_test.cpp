@@ -3,6 +3,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <map>
+#include <string>
+
 #include "core/job/yaml_build.h"
 #include "core/job/yaml_writer.h"
 #include "tests/core/job/test_assets.h"
@@ -62,6 +65,36 @@ TEST(ObjScene, TellsWhatItLeavesOut) {
               testing::UnorderedElementsAre(
                   HasSubstr("no library has a material 'gone'"), HasSubstr("3 points, lines"),
                   HasSubstr("newmtl of this name before"), HasSubstr("Kd above 1")));
+}
+
+/// Counts which files are opened.
+class CountedAssets : public MemoryAssets {
+ public:
+  Result<Bytes> open(const std::string& reference, const std::string& from) override {
+    ++opened[resolve_reference(reference, from)];
+    return MemoryAssets::open(reference, from);
+  }
+  bool exists(const std::string& reference) override {
+    return MemoryAssets::open(reference, {}).ok();
+  }
+
+  std::map<std::string, int> opened;
+};
+
+/// Exporters name it before every group of faces.
+TEST(ObjScene, ALibraryThatIsNamedAgainIsReadOnce) {
+  CountedAssets files;
+  std::string text = "mtllib ./a.mtl\nmtllib b.mtl\nmtllib";
+  for (int i = 0; i < 1000; ++i) text += " a.mtl";
+  files.add("a.obj", text + "\n" + kTriangle + "usemtl red\nf 1 2 3\nusemtl blue\nf 3 2 1\n");
+  files.add("a.mtl", "newmtl red\nKd 1 0 0\n");
+  files.add("b.mtl", "newmtl red\nKd 0.5 0 0\nnewmtl blue\nKd 0 0 1\n");
+  const SceneSections scene = scene_of(files, "a.obj");
+  EXPECT_EQ(files.opened["a.mtl"], 1);
+  EXPECT_EQ(files.opened["b.mtl"], 1);
+  EXPECT_THAT(scene.notes, testing::ElementsAre(HasSubstr(
+                               "a.mtl: line 1: material 'red' is there for the second time")));
+  EXPECT_THAT(write_yaml(*scene.sections), HasSubstr("color: [1, 0, 0]"));
 }
 
 }  // namespace

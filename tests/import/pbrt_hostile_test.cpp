@@ -1,6 +1,8 @@
 // Scene files that are wrong, on purpose or not: an error with its place, nothing else.
 
+#include <algorithm>
 #include <random>
+#include <string>
 
 #include "tests/import/pbrt_files.h"
 
@@ -99,6 +101,77 @@ TEST(PbrtHostile, Meshes) {
               HasSubstr("more than two triangles"));
   EXPECT_THAT(error_of(pbrt_world("Shape \"curve\" \"point3 P\" [0 0 0 1 0 0]")),
               HasSubstr("cannot have 2 points"));
+}
+
+std::string repeated(const std::string& piece, int times) {
+  std::string all;
+  for (int i = 0; i < times; ++i) all += piece;
+  return all;
+}
+
+/// One error of a scene whose meshes are too large together.
+void expect_too_much(const std::string& world) {
+  const std::string error = error_of(pbrt_world(world));
+  EXPECT_THAT(error, HasSubstr("the meshes that are made of the scene up to here have more than"));
+  EXPECT_THAT(error, Not(HasSubstr("\n")));
+}
+
+/// A short line may ask for millions of triangles, and for the same list again.
+TEST(PbrtHostile, MeshesThatAreTooLargeTogether) {
+  const std::string four =
+      "\"point3 P\" [0 0 0 1 0 0 0 1 0 0 0 1] \"integer indices\" "
+      "[0 1 2 0 2 3 0 3 1 1 3 2] ";
+  const std::string levels = "Shape \"loopsubdiv\" " + four + "\"integer levels\" ";
+  EXPECT_EQ(error_of(pbrt_world(levels + "11")), "");
+  expect_too_much(levels + "12");
+  expect_too_much(repeated(levels + "9\n", 40));
+  // A single triangle needs no indices, and counts all the same.
+  EXPECT_THAT(error_of(pbrt_world("Shape \"loopsubdiv\" \"integer levels\" 2000000000 "
+                                  "\"point3 P\" [0 0 0 1 0 0 0 1 0]")),
+              HasSubstr("more than 67,108,864 triangles"));
+  std::string parts;
+  for (int i = 0; i < 1000; ++i) parts += "Shape \"sphere\" \"float phimax\" 350\n";
+  EXPECT_EQ(error_of(pbrt_world(parts)), "");
+  expect_too_much(repeated(parts, 20));
+  std::string points;
+  for (int i = 0; i < 3000; ++i) points += "0 " + std::to_string(i) + " 1 ";
+  const std::string shared = "Attribute \"shape\" \"point3 P\" [" + points +
+                             "] \"integer indices\" [" + repeated("0 1 2 ", 3000) + "]\n";
+  expect_too_much(shared + repeated("Shape \"trianglemesh\"\n", 20'000));
+  const std::string wrong = error_of(pbrt_world(shared + repeated("Shape \"loopsubdiv\"\n", 99)));
+  EXPECT_EQ(std::count(wrong.begin(), wrong.end(), '\n'), 19);
+}
+
+/// A mesh that is turned over is made anew for each shape.
+TEST(PbrtHostile, AFileThatIsTurnedOverVeryOften) {
+  PbrtFiles files(pbrt_world("ReverseOrientation Material \"dielectric\"\n" +
+                             repeated("Shape \"plymesh\" \"string filename\" \"a.ply\"\n", 1000)));
+  files.add("a.ply", std::string(1'000'000, ' '));
+  EXPECT_THAT(read_pbrt_job(files).error, HasSubstr("the meshes that are made of the scene"));
+}
+
+/// Files count once, however often they are included.
+TEST(PbrtHostile, IncludedFilesMakeNoRoom) {
+  PbrtFiles files(pbrt_world(repeated("Include \"a.pbrt\"\n", 2000)));
+  files.add("a.pbrt", "Shape \"sphere\" \"float phimax\" 350\n" + std::string(10'000, ' '));
+  EXPECT_THAT(read_pbrt_job(files).error,
+              HasSubstr("the meshes that are made of the scene up to here have more than"));
+}
+
+/// Each shape has all attributes.
+TEST(PbrtHostile, AttributesWithoutEnd) {
+  std::string same;
+  std::string others;
+  for (int i = 0; i < 100'000; ++i) {
+    same += "Attribute \"shape\" \"float radius\" " + std::to_string(i % 7 + 1) + "\n";
+    others += "\"float a" + std::to_string(i) + "\" 1 ";
+  }
+  const PbrtJob job = pbrt_job(pbrt_world(same + repeated("Shape \"sphere\"\n", 20'000)));
+  EXPECT_EQ(job.error, "");
+  EXPECT_THAT(job.text, HasSubstr("sphere-20000:\n    shape: sphere\n    radius: 5\n"));
+  EXPECT_EQ(error_of(pbrt_world("Attribute \"shape\" " + others)),
+            "scene.pbrt:5:1: 'shape' has more than 256 attributes here");
+  EXPECT_EQ(pbrt_job(pbrt_world("Shape \"sphere\" " + others)).notes.size(), 1001U);
 }
 
 TEST(PbrtHostile, ThingsThatAreNotThere) {

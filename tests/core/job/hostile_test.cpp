@@ -7,10 +7,12 @@
 #include <cstring>
 #include <ctime>
 #include <functional>
+#include <map>
 #include <random>
 #include <string>
 #include <vector>
 
+#include "core/job/ocio_files.h"
 #include "core/job/parse.h"
 #include "core/job/render_key.h"
 #include "tests/core/job/test_assets.h"
@@ -343,6 +345,122 @@ TEST(HostileJob, HugeTexts) {
 TEST(HostileJob, MillionsOfSmallValues) {
   expect_refused("hyades: 1\nobjects: [" + repeated("1,", 2'000'000) + "]\n",
                  "job.yaml:2:2097153: more than 1048576 values");
+}
+
+/// Each transform could be looked for up to the end of the text, and each file in every folder.
+TEST(HostileJob, ColourConfigurationsAreReadOnce) {
+  const std::string transforms = repeated("<FileTransform>", 500'000);
+  EXPECT_THAT(ocio_file_candidates("src\n" + transforms), testing::IsEmpty());
+  EXPECT_THAT(ocio_file_candidates(repeated("<FileTransform>src:x ", 50'000)),
+              testing::ElementsAre("./x"));
+  std::string config = "search_path: ";
+  for (int i = 0; i < 10'000; ++i) config += "p" + std::to_string(i) + ":";
+  config += "\n";
+  std::string same = config;
+  for (int i = 0; i < 200'000; ++i) {
+    config += "!<FileTransform> {src: f" + std::to_string(i) + "}\n";
+    same += i % 2 == 0 ? "!<FileTransform> {src: a}\n" : "!<FileTransform> {src: a/a}\n";
+  }
+  EXPECT_EQ(ocio_file_candidates(config).size(), 10'000U);
+  EXPECT_EQ(ocio_file_candidates(same).size(), 10'000U);
+  const std::string longest = std::string(5000, 'x');
+  EXPECT_THAT(ocio_file_candidates("search_path: a:" + longest + "\n!<FileTransform> {src: " +
+                                   longest + "}\n!<FileTransform> {src: f}"),
+              testing::ElementsAre("a/f"));
+}
+
+/// Has every file, and counts which are opened.
+class EveryFile : public AssetResolver {
+ public:
+  Result<Bytes> open(const std::string& reference, const std::string&) override {
+    ++opened[reference];
+    return Bytes();
+  }
+  bool exists(const std::string&) override { return true; }
+
+  std::map<std::string, int> opened;
+};
+
+/// Runs of # of any length mean the same file at long frame numbers.
+TEST(HostileJob, ManySequencesOfTheSameFiles) {
+  std::string text = "hyades: 1\nframes: {range: 1000000-1000499, shutter: 0.5}\nobjects:\n";
+  for (int i = 0; i < 1500; ++i) {
+    text += "  o" + std::to_string(i) + ": {mesh: a" + std::string(1 + i % 7, '#') + "b" +
+            std::string(1 + i / 7 % 7, '#') + "c" + std::string(1 + i / 49 % 7, '#') + "d" +
+            std::string(1 + i / 343, '#') + ".ply}\n";
+  }
+  EveryFile files;
+  Diagnostics diagnostics;
+  parse_job(text, "job.yaml", files, diagnostics);
+  EXPECT_EQ(diagnostics.to_string(), "");
+  EXPECT_EQ(files.opened.size(), 501U);
+  for (const auto& [file, times] : files.opened) EXPECT_EQ(times, 1) << file;
+
+  text.replace(text.find("1000499"), 7, "1000999");
+  parse_job(text, "job.yaml", files, diagnostics);
+  ASSERT_FALSE(diagnostics.empty());
+  EXPECT_EQ(diagnostics.list().front().to_string(),
+            "job.yaml:1004:17: mesh of object 'o1000': the job's sequences of meshes have more "
+            "than 1,000,000 files");
+  EXPECT_EQ(files.opened.size(), 1001U);
+}
+
+/// Each could be compared with the names of all groups.
+TEST(HostileJob, ManyWrongLayersOfManyLightGroups) {
+  std::string lights = "lights:\n";
+  for (int i = 0; i < 10'000; ++i) {
+    const std::string n = std::to_string(i);
+    lights += "  t" + n + ": {type: point, light_group: g" + n + "}\n";
+  }
+  const std::string head = "hyades: 1\n" + lights + "outputs:\n  - {file: a.exr, layers: [";
+  const HostileReading wrong = read_hostile(head + repeated("x, ", 50'000) + "beauty]}\n");
+  EXPECT_EQ(wrong.diagnostics.list().size(), 101U);
+  EXPECT_LT(wrong.seconds, kPatience);
+  const HostileReading aliases =
+      read_hostile(head + "&wrong x, " + repeated("*wrong, ", 20'000) + "beauty]}\n");
+  EXPECT_THAT(aliases.first(), HasSubstr("layer is 'x', expected beauty, alpha"));
+  EXPECT_LT(aliases.seconds, kPatience);
+}
+
+/// What each is made of could be looked through for each.
+TEST(HostileJob, ManyTwoSidedMaterialsOfTheSame) {
+  const auto two_sided = [](const std::string& front, int count) {
+    std::string text;
+    for (int i = 0; i < count; ++i) {
+      text +=
+          "  s" + std::to_string(i) + ": {type: two-sided, front: " + front + ", back: m3999}\n";
+    }
+    return text;
+  };
+  std::string chain = "hyades: 1\nmaterials:\n  m0: {type: lambert}\n";
+  std::string tree = "hyades: 1\nmaterials:\n";
+  for (int i = 1; i < 20'000; ++i) {
+    chain += "  m" + std::to_string(i) + ": {type: mix, first: m" + std::to_string(i - 1) +
+             ", second: m0}\n";
+  }
+  for (int i = 1; i < 4000; ++i) {
+    const std::string n = std::to_string(i);
+    tree += i >= 2000 ? "  m" + n + ": {type: lambert}\n"
+                      : "  m" + n + ": {type: mix, first: m" + std::to_string(2 * i) +
+                            ", second: m" + std::to_string(2 * i + 1) + "}\n";
+  }
+  const HostileReading refused = read_hostile(chain + two_sided("m19999", 20'000));
+  EXPECT_EQ(refused.diagnostics.to_string(),
+            "job.yaml:36:8: material 'm33' is made of more than 32 others in a row\n");
+  EXPECT_LT(refused.seconds, kPatience);
+  const HostileReading good = read_hostile(tree + two_sided("m1", 20'000));
+  EXPECT_EQ(good.diagnostics.to_string(), "");
+  EXPECT_LT(good.seconds, kPatience);
+}
+
+TEST(HostileJob, ManyStopsOfOneRamp) {
+  std::string text =
+      "hyades: 1\ntextures:\n  q: {type: checker}\n  r:\n    type: ramp\n"
+      "    input: q\n    stops:\n";
+  for (int i = 0; i < 150'000; ++i) text += "      " + std::to_string(i) + ": 0.5\n";
+  const HostileReading reading = read_hostile(text);
+  EXPECT_EQ(reading.diagnostics.to_string(), "");
+  EXPECT_LT(reading.seconds, kPatience);
 }
 
 TEST(HostileJob, ManyObjectsWithOneName) {
