@@ -138,6 +138,7 @@ void FieldWriter::mesh_file(const KeyName& key, const std::string& reference) {
   put_file(key.line, mesh_file_at(reference, now));
   const std::string next = mesh_file_at(reference, {now.seconds, now.frame + 1.0});
   if (ahead_ && hashes_.contains(next)) put_file("next", next);
+  if (!sequences_.insert(reference).second) return;  // many objects may show the same
   for (const auto& [file, hash] : hashes_) {
     if (is_of_sequence(reference, file)) named_.insert(file);
   }

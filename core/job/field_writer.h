@@ -93,6 +93,7 @@ class FieldWriter : public FieldVisitor<FieldWriter> {
   std::vector<JobTime> moments_;
   std::map<std::string, std::string> hashes_;
   std::set<std::string> named_;
+  std::set<std::string> sequences_;  ///< patterns whose files are among named_
   bool ahead_;
   std::string path_;
   std::vector<size_t> starts_;

@@ -51,6 +51,12 @@ std::string file_extension(const std::string& file) {
   return lower_case(std::filesystem::path(file).extension().string());
 }
 
+std::string place_of_output(const std::string& file) {
+  std::string place = comparable(file).generic_string();
+  std::replace(place.begin(), place.end(), '/', '\0');
+  return place;
+}
+
 bool same_output_path(const std::string& a, const std::string& b) {
   return comparable(a) == comparable(b);
 }

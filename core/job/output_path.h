@@ -26,6 +26,10 @@ std::string file_extension(const std::string& file);
 /// Whether one of two outputs of a frame would have to be a folder that the other lies in.
 bool nested_output_paths(const std::string& a, const std::string& b);
 
+/// The place of the files of an output among those of others: outputs that write the same files
+/// have the same one, and its folders are its beginnings, with '\0' behind each.
+std::string place_of_output(const std::string& file);
+
 /// Whether two outputs write the same files (for every frame the same ones).
 bool same_output_path(const std::string& a, const std::string& b);
 

@@ -35,6 +35,12 @@ struct FileUse {
   std::string script{};    ///< that names it, and may not name every file; empty: the job does
 };
 
+/// A file that the job writes.
+struct OutputPlace {
+  std::string file;
+  SourceLocation where;
+};
+
 /// What all readers of one job share.
 struct ReadContext {
   ReadContext(Job& target, Diagnostics& complaints) : job(target), diagnostics(complaints) {}
@@ -52,6 +58,8 @@ struct ReadContext {
   std::map<std::string, YamlPtr> materials;  ///< as written, `like` followed; for overrides
   /// Those of light_groups_of(job), once somebody has asked for them (check_layer).
   std::optional<std::vector<std::string>> light_groups;
+  /// What the job writes so far, by place_of_output(); no place is another's folder.
+  std::map<std::string, OutputPlace> output_places;
   bool files_missing = false;     ///< files that names may stand in could not be read
   KeyListing* listing = nullptr;  ///< set: only collect which keys the readers know
 

@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/base/assets.h"
 #include "core/base/text.h"
 #include "core/job/output_names.h"
 #include "core/job/output_path.h"
@@ -121,6 +122,10 @@ void read_output(MapReader& reader, Job& job) {
   }
   if (output.file.empty()) return;
   const SourceLocation where = reader.where_of("file");
+  if (output.file.size() > kLongestFileName) {
+    return reader.complain(where, fmt::format("file is a name of {} bytes, expected at most {}",
+                                              output.file.size(), kLongestFileName));
+  }
   const std::string extension = file_extension(output.file);
   const auto row = std::find_if(kFormats.begin(), kFormats.end(),
                                 [&](const FormatRow& r) { return extension == r.extension; });

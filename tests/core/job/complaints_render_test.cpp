@@ -72,6 +72,15 @@ TEST(Complaints, Outputs) {
   EXPECT_EQ(complaints("outputs: [{file: a.exr, layers: [beauty, normals, beauty]}]\n"),
             "job.yaml:2:42: layer is 'normals', did you mean 'normal'?\n"
             "job.yaml:2:51: layer 'beauty' is listed twice\n");
+  EXPECT_EQ(complaints("outputs: [{file: " + std::string(5000, 'a') + ".exr}]\n"),
+            "job.yaml:2:18: file is a name of 5004 bytes, expected at most 4096\n");
+  EXPECT_EQ(
+      complaints("outputs: [{file: a/b/c.exr}, {file: a/bb.exr}, {file: a/b}]\n").substr(0, 30),
+      "job.yaml:2:55: file is 'a/b', ");
+  EXPECT_EQ(complaints("outputs: [{file: a.exr}, {file: a.exr-2.exr}, {file: a.exr/b.exr}]\n"),
+            "job.yaml:2:54: file is 'a.exr/b.exr', which cannot stand beside 'a.exr' of line 2: "
+            "one would be the other's folder\n")
+      << "what lies between them in order is no reason";
   EXPECT_EQ(complaints("name: b\nkeep_films: true\noutputs: [{file: ./b.film.exr}]\n"),
             "job.yaml:4:18: file is './b.film.exr', where keep_films puts the film, expected "
             "another name\n");

@@ -707,5 +707,24 @@ TEST(HostileJob, RandomEditsNeverDoMoreThanComplain) {
   EXPECT_LT(slowest, kPatience);
 }
 
+TEST(HostileJob, ManyOutputsInDeepFolders) {
+  // A file of each layer, and so of each group, for each of them.
+  std::string text = "hyades: 1\nlights:\n";
+  for (int i = 0; i < 30; ++i) {
+    text +=
+        "  l" + std::to_string(i) + ": {type: point, light_group: g" + std::to_string(i) + "}\n";
+  }
+  text += "outputs:\n";
+  std::string folder;
+  for (int i = 0; i < 1900; ++i) folder += "d/";
+  for (int i = 0; i < 100; ++i) {
+    text +=
+        "  - {file: \"" + folder + std::to_string(i) + ".{layer}.exr\", layers: [light_groups]}\n";
+  }
+  const HostileReading reading = read_hostile(text);
+  EXPECT_EQ(reading.diagnostics.to_string(), "");
+  EXPECT_LT(reading.seconds, kPatience);
+}
+
 }  // namespace
 }  // namespace hyades::core
