@@ -91,8 +91,9 @@ core::Status JobFrames::check_film_names() const {
 }
 
 core::Status JobFrames::check_output_links(const std::vector<int32_t>& frames) const {
+  core::FolderLinks links(options_.folder);
   for (const std::string& path : all_paths(frames)) {
-    if (auto stays = core::stays_in_folder(options_.folder, path); !stays) return stays;
+    if (auto stays = links.check(path); !stays) return stays;
   }
   return {};
 }

@@ -29,6 +29,7 @@
 #include "coordinator/local/local_run.h"
 #include "coordinator/scheduler/tile_grid.h"
 #include "core/base/atomic_file.h"
+#include "core/base/folder_links.h"
 #include "core/base/text.h"
 #include "core/job/layers.h"
 #include "core/job/noise_threshold.h"
@@ -197,8 +198,8 @@ core::Status check_own_folders(const std::string& folder, const std::string& kep
   };
   const auto refuse = [](const fs::path& path) {
     return core::Error{path.string() +
-                       ": neither a file nor a folder, expected what an earlier run has kept, or "
-                       "nothing"};
+                       ": neither a file nor a folder that can be listed, expected what an earlier "
+                       "run has kept, or nothing"};
   };
   for (const std::string& own : {folder + "/.hyades", kept}) {
     if (!is_own(own)) return refuse(own);
@@ -206,6 +207,8 @@ core::Status check_own_folders(const std::string& folder, const std::string& kep
          entry.increment(failed)) {
       if (!is_own(entry->path())) return refuse(entry->path());
     }
+    // What may not be listed may be opened by its name.
+    if (failed && !core::is_not_there(failed)) return refuse(own);
   }
   return {};
 }

@@ -2,6 +2,7 @@
 #include <cstdio>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
@@ -9,8 +10,10 @@
 #include "cli/command_line.h"
 #include "cli/load_job.h"
 #include "cli/number_range.h"
+#include "cli/own_files.h"
 #include "cli/scene_options.h"
 #include "cli/written_file.h"
+#include "core/base/folder_links.h"
 #include "core/base/parallel.h"
 #include "core/finish/frame_outputs.h"
 #include "core/render/render_frame.h"
@@ -24,7 +27,18 @@ struct StrategiesOptions {
   int events = 4;
   int threads = core::hardware_threads();
   std::string output = ".";
+  bool overwrite = false;
 };
+
+core::Status may_write(const StrategiesOptions& options, const std::string& name,
+                       const std::string& job) {
+  const std::string path = options.output + "/" + name;
+  const std::vector<std::string> paths = {path + ".exr", path + ".png"};
+  for (const std::string& each : paths) {
+    if (auto stays = core::stays_in_folder(options.output, each); !stays) return stays;
+  }
+  return options.overwrite ? core::Status{} : check_own_files(paths, job);
+}
 
 /// Renders what strategy (s, t) brings to the picture, and writes it. False (and a message) where
 /// that fails.
@@ -36,12 +50,16 @@ bool write_strategy(const std::shared_ptr<const core::Scene>& scene, core::Job j
   job.integrator.mis = weighted;
   core::LayerSet layers;
   layers.splats = true;
+  const std::string name =
+      fmt::format("{}.s{}-t{}{}", job.name, s, t, weighted ? "" : ".unweighted");
+  if (const auto may = may_write(options, name, job.name); !may) {
+    print_error(may.error());
+    return false;
+  }
   const core::FrameRenderer renderer(scene, job, options.frame, layers);
   const core::RenderedFrame rendered =
       core::render_frame(renderer, core::render_window(job.film), job.sampling.samples,
                          options.frame, {.threads = options.threads});
-  const std::string name =
-      fmt::format("{}.s{}-t{}{}", job.name, s, t, weighted ? "" : ".unweighted");
   core::OutputDesc exr;
   exr.file = name + ".exr";
   exr.layers = {"beauty", "variance"};
@@ -86,6 +104,8 @@ int strategies_command(int argc, char** argv) {
       ->check(in_range(1U, 16'777'216U));
   app.add_option("--threads", options.threads, "rendering threads")->check(in_range(1, 1024));
   declare_output_folder(app, options.output, "folder for the pictures");
+  app.add_flag("--overwrite", options.overwrite,
+               "replace files that are there, whoever made them (default: those of this job)");
   app.footer(
       "examples:\n  hyades strategies jobs/cornell/job.yaml --events 2 --samples 64 --output "
       "parts\n"

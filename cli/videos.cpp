@@ -66,11 +66,12 @@ core::Result<size_t> pictures_of_light(const core::Job& job, const core::VideoDe
 
 /// Whether no link leads the videos, or the pictures that go once they are made, out of the folder.
 core::Status stay_in_folder(const core::Job& job, const core::VideoFrames& frames) {
+  core::FolderLinks links(frames.folder);
   for (const core::VideoDesc& video : job.videos) {
     std::vector<std::string> paths = core::video_pictures(video, frames);
     paths.push_back(frames.folder + "/" + core::video_file(video, frames));
     for (const std::string& path : paths) {
-      if (auto stays = core::stays_in_folder(frames.folder, path); !stays) return stays;
+      if (auto stays = links.check(path); !stays) return stays;
     }
   }
   return {};

@@ -37,8 +37,11 @@ void declare_output_folder(CLI::App& app, std::string& folder, const std::string
 
 core::Status WrittenFile::check(const std::string& path) const {
   std::error_code none;
+  const bool is_plain = std::filesystem::is_regular_file(path, none);
+  const bool leads_nowhere =
+      std::filesystem::is_symlink(path, none) && !std::filesystem::exists(path, none);
   // What is no plain file, /dev/stdout say, is not replaced.
-  if (overwrite || !std::filesystem::is_regular_file(path, none)) return {};
+  if (overwrite || (!is_plain && !leads_nowhere)) return {};
   return core::Error{path + " is there already (--overwrite replaces it)"};
 }
 

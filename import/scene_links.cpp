@@ -36,10 +36,6 @@ std::optional<Marked> marked(const std::string& step) {
   return Marked{step.substr(0, first), step.substr(std::max(after_frame, after_tile))};
 }
 
-bool is_not_there(const std::error_code& error) {
-  return error == std::errc::no_such_file_or_directory || error == std::errc::not_a_directory;
-}
-
 /// Where nobody can tell what a link leads to, the system may open it all the same: what a name
 /// stands for may be longer than any name.
 Error unknown(const std::string& file, const std::string& way, const std::error_code& why) {
@@ -125,7 +121,12 @@ Status SceneLinks::check_one(const std::string& base, const std::string& file) c
   const fs::path home = fs::canonical(start.empty() ? "." : start, failed);
   if (failed) return is_not_there(failed) ? Status{} : unknown(file, start.string(), failed);
   const fs::path target = fs::canonical(fs::path(folder_) / file, failed);
-  if (failed) return is_not_there(failed) ? Status{} : unknown(file, file, failed);
+  if (failed) {
+    // The system opens some that have no name any more, through /proc.
+    std::error_code none;
+    const bool opens = fs::exists(fs::path(folder_) / file, none);
+    return is_not_there(failed) && !opens ? Status{} : unknown(file, file, failed);
+  }
   if (is_inside(target, home)) return {};
   // The first link on the way that leads out is the one to tell.
   fs::path way = start;

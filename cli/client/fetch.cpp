@@ -18,6 +18,7 @@
 #include <fmt/format.h>
 
 #include "core/base/descriptor.h"
+#include "core/base/folder_links.h"
 #include "core/base/hash.h"
 #include "core/base/io_reason.h"
 #include "core/base/posix_file.h"
@@ -139,6 +140,10 @@ Outcome FetchTarget::check_name(const std::string& path) const {
     return Failure{kFailed, path +
                                 ": hidden files, and names that begin with '-', are not written "
                                 "(--hidden writes them)"};
+  }
+  // The folder may have come with somebody's scene.
+  if (auto stays = core::stays_in_folder(folder, folder + "/" + path); !stays) {
+    return Failure{kFailed, stays.error().message};
   }
   return std::nullopt;
 }

@@ -5,9 +5,11 @@
 
 #include <cerrno>
 #include <cstddef>
+#include <filesystem>
 #include <fstream>
 #include <optional>
 #include <span>
+#include <system_error>
 #include <utility>
 
 #include "core/base/io_reason.h"
@@ -15,6 +17,15 @@
 
 namespace hyades::cli {
 FetchRecord::FetchRecord(std::string folder) : file_(std::move(folder) + "/.hyades/fetched") {
+  // What is a link, or a pipe, came with somebody's folder.
+  namespace fs = std::filesystem;
+  std::error_code none;
+  const auto type_of = [&](const fs::path& path) { return fs::symlink_status(path, none).type(); };
+  const fs::file_type own = type_of(fs::path(file_).parent_path());
+  const fs::file_type file = type_of(file_);
+  is_plain_ = (own == fs::file_type::directory || own == fs::file_type::not_found) &&
+              (file == fs::file_type::regular || file == fs::file_type::not_found);
+  if (!is_plain_ || file != fs::file_type::regular) return;
   std::ifstream lines(file_);
   for (std::string line; std::getline(lines, line);) {
     if (!lines.eof()) paths_.insert(line);  // the last one may have been cut short
@@ -23,6 +34,10 @@ FetchRecord::FetchRecord(std::string folder) : file_(std::move(folder) + "/.hyad
 
 Outcome FetchRecord::add(const std::string& path) {
   if (has(path)) return std::nullopt;
+  if (!is_plain_) {
+    return Failure{
+        kFailed, file_ + ": no plain file in a plain folder, expected what hyades has made there"};
+  }
   // Beside where `hyades render` keeps its films.
   ::mkdir(file_.substr(0, file_.rfind('/')).c_str(), 0777);
   const std::string line = path + "\n";

@@ -24,6 +24,7 @@ class FetchRecord {
  private:
   std::string file_;
   std::set<std::string> paths_;
+  bool is_plain_ = true;  ///< neither link nor pipe stands there
 };
 
 }  // namespace hyades::cli

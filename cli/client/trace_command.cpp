@@ -19,6 +19,7 @@
 #include "cli/client/trace_writer.h"
 #include "cli/client_commands.h"
 #include "cli/status_line.h"
+#include "cli/written_file.h"
 #include "core/base/io_reason.h"
 #include "farm/job_state.h"
 
@@ -115,7 +116,7 @@ int trace_command(int argc, char** argv) {
   std::string name;
   std::string file;
   bool follow = false;
-  bool quiet = false;
+  WrittenFile written;
   app.app().add_option("job", name, "its id, or its name (of several: the newest)")->required();
   app.app()
       .add_option("-o,--output", file, "the JSON file to write")
@@ -123,11 +124,14 @@ int trace_command(int argc, char** argv) {
       ->type_name("FILE");
   app.app().add_flag("--follow", follow,
                      "stay until the job has ended: the coordinator keeps the last 40,000 steps");
-  app.app().add_flag("-q,--quiet", quiet, "say nothing where all goes well");
+  declare_written_file(app.app(), written);
   app.give_examples(
       {"hyades trace perlin-sphere -o trace.json", "hyades trace 12 --follow -o trace.json"},
       "Open the file at ui.perfetto.dev or chrome://tracing.");
   if (const auto status = app.parse(argc, argv)) return *status;
+  if (const auto may = written.check(file); !may) {
+    return app.report({kBadArguments, may.error().message});
+  }
   const auto client = app.connect();
   if (!client) return kBadArguments;
   uint64_t id = 0;
@@ -149,7 +153,7 @@ int trace_command(int argc, char** argv) {
   out.flush();
   if (!out) return cannot_write();
   if (failure) return app.report(*failure);
-  if (!quiet) {
+  if (!written.quiet) {
     std::fprintf(stderr, "wrote %s: %lu units of job %lu\n", core::printable(file).c_str(),
                  writer.units(), id);
   }

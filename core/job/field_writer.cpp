@@ -138,16 +138,12 @@ void FieldWriter::mesh_file(const KeyName& key, const std::string& reference) {
   put_file(key.line, mesh_file_at(reference, now));
   const std::string next = mesh_file_at(reference, {now.seconds, now.frame + 1.0});
   if (ahead_ && hashes_.contains(next)) put_file("next", next);
-  if (!sequences_.insert(reference).second) return;  // many objects may show the same
-  for (const auto& [file, hash] : hashes_) {
-    if (is_of_sequence(reference, file)) named_.insert(file);
-  }
+  sequences_.insert(reference);
 }
 
-void FieldWriter::put_other_files(const std::vector<std::string>& except) {
+void FieldWriter::put_other_files(const std::set<std::string>& except) {
   for (const auto& [reference, hash] : hashes_) {
-    if (named_.contains(reference)) continue;
-    if (std::find(except.begin(), except.end(), reference) != except.end()) continue;
+    if (named_.contains(reference) || except.contains(reference)) continue;
     put("asset", fmt::format("{} {}", reference, hash));
   }
 }

@@ -54,7 +54,9 @@ class FieldWriter : public FieldVisitor<FieldWriter> {
   /// A file by the hash of its content, or by its name where the hash is not known.
   void put_file(std::string_view key, const std::string& reference);
   /// Assets that no put_file has named, but for those in `except`.
-  void put_other_files(const std::vector<std::string>& except);
+  void put_other_files(const std::set<std::string>& except);
+  /// The sequences of meshes that are named so far.
+  const std::set<std::string>& sequences() const { return sequences_; }
 
   /// Keys until the matching leave() stand below `name`.
   void enter(std::string_view name);
@@ -68,7 +70,7 @@ class FieldWriter : public FieldVisitor<FieldWriter> {
   // As a visitor of keys.
   void file(const KeyName& key, const std::string& reference) { put_file(key.line, reference); }
   /// The file of a mesh at a frame of the job, of a sequence that and, where frames look ahead, the
-  /// next one, as far as they are known. All of a sequence count as named.
+  /// next one, as far as they are known.
   void mesh_file(const KeyName& key, const std::string& reference);
   void children(const KeyName& key, const std::vector<ObjectDesc>& children);
   void light_group(const KeyName& key, const std::string& group) {
@@ -93,7 +95,7 @@ class FieldWriter : public FieldVisitor<FieldWriter> {
   std::vector<JobTime> moments_;
   std::map<std::string, std::string> hashes_;
   std::set<std::string> named_;
-  std::set<std::string> sequences_;  ///< patterns whose files are among named_
+  std::set<std::string> sequences_;
   bool ahead_;
   std::string path_;
   std::vector<size_t> starts_;

@@ -108,7 +108,7 @@ class Loader {
     return all.map();
   }
 
-  using Opening = Result<Bytes> (AssetResolver::*)(const std::string&, const std::string&);
+  enum class Opens : uint8_t { file, document };  ///< document: what is made of a scene
 
   struct Opened {
     std::string reference;
@@ -126,12 +126,12 @@ class Loader {
                        what + " is " + describe(name) + ", expected a file name or a list of them");
       return std::nullopt;
     }
-    return open_file(&AssetResolver::open, name.scalar, name, from, what);
+    return open_file(Opens::file, name.scalar, name, from, what);
   }
 
   /// Opens the file `wanted`, relative to `from`, that `name` means. Nothing where it was read
   /// already, or after a complaint.
-  std::optional<Opened> open_file(Opening opening, const std::string& wanted, const YamlNode& name,
+  std::optional<Opened> open_file(Opens opens, const std::string& wanted, const YamlNode& name,
                                   const std::string& from, const std::string& what) {
     if (!check_file_name(wanted, name, what)) return std::nullopt;
     const std::string reference = resolve_reference(wanted, from);
@@ -152,7 +152,7 @@ class Loader {
     }
     seen_.insert(reference);
     // A file that only has such a name tells nothing of a scene, its marks nothing of a script.
-    const bool made = opening == &AssetResolver::open_document;
+    const bool made = opens == Opens::document;
     const auto scene = made ? document_of(reference) : std::nullopt;
     const std::string named = scene ? scene->scene : reference;
     std::string script = tree.origins.script_at(name.where);
@@ -164,7 +164,7 @@ class Loader {
     } else if (is_script_file(named)) {
       script = named;
     }
-    auto bytes = (assets_.*opening)(wanted, from);
+    auto bytes = made ? assets_.open_document(wanted, from) : assets_.open(wanted, from);
     if (!bytes) {
       diagnostics_.add(name.where, what + ": " + bytes.error().message);
       return std::nullopt;
@@ -242,8 +242,7 @@ class Loader {
   /// The document of a scene of another tool, which lies beside the scene.
   YamlPtr load_scene(const SceneDocument& scene, const YamlNode& name, const std::string& from,
                      const std::string& what) {
-    const auto file =
-        open_file(&AssetResolver::open_document, reference_of(scene), name, from, what);
+    const auto file = open_file(Opens::document, reference_of(scene), name, from, what);
     return file ? load_opened(*file) : nullptr;
   }
 

@@ -1,10 +1,8 @@
 #include "core/job/mesh_files.h"
 
-#include <charconv>
 #include <cmath>
 #include <cstddef>
 #include <limits>
-#include <system_error>
 #include <utility>
 
 #include "core/base/text.h"
@@ -27,17 +25,23 @@ std::string mesh_file_at(const std::string& file, const JobTime& time) {
                                 : file;
 }
 
-bool is_of_sequence(const std::string& pattern, const std::string& file) {
-  const size_t run = pattern.find('#');
-  if (run == std::string::npos || run >= file.size()) return file == pattern;
-  if (file.compare(0, run, pattern, 0, run) != 0) return false;
-  int32_t frame = 0;
-  const auto number = std::from_chars(file.data() + run, file.data() + file.size(), frame);
-  return number.ec == std::errc() && output_path(pattern, frame) == file;
-}
-
 bool looks_at_next_frame(const Job& job) {
   return job.frames.shutter > 0.0F || needed_layers(job).motion;
+}
+
+std::set<std::string> sequence_files(const Job& job, const std::set<std::string>& patterns) {
+  const bool ahead = looks_at_next_frame(job);
+  std::set<std::string> files;
+  for (const std::string& pattern : patterns) {
+    for (int64_t at = job.frames.first; at <= job.frames.last; at += job.frames.step) {
+      if (files.size() > kMostSequenceFiles) return files;
+      const auto frame = static_cast<int32_t>(at);
+      files.insert(output_path(pattern, frame));
+      if (!ahead || frame == std::numeric_limits<int32_t>::max()) continue;
+      files.insert(output_path(pattern, frame + 1));
+    }
+  }
+  return files;
 }
 
 MeshSequenceOpener::MeshSequenceOpener(const Job& job, AssetResolver& assets)

@@ -17,12 +17,12 @@ bool is_mesh_sequence(const std::string& file);
 /// The file of a mesh at `time`, in whose frame it lies; `file` itself where there is only one.
 std::string mesh_file_at(const std::string& file, const JobTime& time);
 
-/// Whether `file` is one of the sequence `pattern`, of whatever frame.
-bool is_of_sequence(const std::string& pattern, const std::string& file);
-
 /// Whether frames of the job look at the meshes of the frame after them: for what happens while the
 /// shutter is open, or for the motion layer.
 bool looks_at_next_frame(const Job& job);
+
+/// The files of these sequences at which frames of the job look; of very many, a million or two.
+std::set<std::string> sequence_files(const Job& job, const std::set<std::string>& patterns);
 
 /// Opens the files of a job's sequences, so that whoever records what a job opens knows them. Each
 /// is opened once, however many sequences it belongs to.

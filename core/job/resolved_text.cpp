@@ -1,5 +1,8 @@
 #include "core/job/resolved_text.h"
 
+#include <set>
+#include <string>
+
 #include "core/base/version.h"
 #include "core/job/field_writer.h"
 #include "core/job/layers.h"
@@ -90,7 +93,10 @@ std::string resolved_job_text(const Job& job, int32_t frame,
   for (const LightDesc& light : job.lights) write_light(out, light);
   out.map("environment", "", job.environment);
   if (!job.atmosphere.empty()) out.put("atmosphere", job.atmosphere);
-  out.put_other_files(job.includes);
+  // Other frames' meshes are no business of this one.
+  std::set<std::string> others = sequence_files(job, out.sequences());
+  others.insert(job.includes.begin(), job.includes.end());
+  out.put_other_files(others);
   return out.take();
 }
 

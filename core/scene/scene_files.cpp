@@ -53,6 +53,7 @@ class Walk {
 
  private:
   static constexpr size_t kMostFrames = 1'000'000;
+  static constexpr size_t kMostFiles = 1'000'000;  ///< the reader lets sequences have so many
 
   Walk() = default;
 
@@ -123,6 +124,7 @@ class Walk {
     }
     std::set<std::string> seen;
     for (const JobTime& time : times_) {
+      if (files_.meshes.size() > kMostFiles) return;
       const std::string file = mesh_file_at(object.mesh, time);
       if (seen.insert(file).second) files_.meshes.push_back({file, *use, user, object.where, true});
     }

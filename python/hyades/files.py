@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import os
+import secrets
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
@@ -56,6 +57,8 @@ class JobFiles:
         """Brings what arrays have become to the disk; what is there has that content already."""
         for name, data in self.made.items():
             path = self.folder / name
+            if not stays_in_folder(self.folder, path):
+                raise OSError(f"{path}: a link leads it out of the job's folder")
             if path.exists() and path.stat().st_size == len(data):
                 continue
             path.parent.mkdir(parents=True, exist_ok=True)
@@ -63,10 +66,23 @@ class JobFiles:
 
 
 def write_whole(path: Path, data: bytes) -> None:
-    """Nobody sees a part of the file."""
-    temporary = path.with_name(f".{path.name}.{os.getpid()}.part")
-    temporary.write_bytes(data)
-    os.replace(temporary, path)
+    """Nobody sees a part of the file. A link that stands there is replaced, not followed: the folder may have come
+    with somebody's scene."""
+    temporary = path.with_name(f".{path.name[:200]}.{secrets.token_hex(8)}.part")
+    flags = os.O_WRONLY | os.O_CREAT | os.O_EXCL | getattr(os, "O_BINARY", 0)
+    try:
+        with os.fdopen(os.open(temporary, flags, 0o666), "wb") as file:
+            file.write(data)
+        os.replace(temporary, path)
+    except OSError:
+        temporary.unlink(missing_ok=True)
+        raise
+
+
+def stays_in_folder(folder: Path, path: Path) -> bool:
+    """Whether no link leads `path`, below `folder` and still to be written, out of it."""
+    home = folder.resolve()
+    return home in (path.parent.resolve() / path.name).parents
 
 
 def _encoded(value: Any) -> tuple[bytes, str]:

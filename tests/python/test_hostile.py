@@ -10,6 +10,7 @@ from unittest import mock
 from urllib.parse import parse_qs, urlsplit
 
 import environment  # noqa: F401
+import numpy
 from fake_farm import FakeFarm, Request
 
 import hyades
@@ -105,6 +106,50 @@ class Fetch(unittest.TestCase):
         with self.assertRaises((OSError, hyades.FarmError)):
             self.fetch(Serves(output("a.exr")))
         self.assertEqual(victim.read_bytes(), b"dear")
+
+    def test_folders_that_lead_elsewhere_are_not_written_to(self) -> None:
+        home = self.scratch / "home"
+        home.mkdir()
+        (home / "mine.exr").write_bytes(b"mine")
+        (self.folder / ".hyades").mkdir()
+        (self.folder / ".hyades/fetched").write_text("pics/mine.exr\n")
+        os.symlink(home, self.folder / "pics")
+        for overwrite in (False, True):
+            with self.assertRaises(hyades.FileRefused):
+                self.fetch(Serves(output("pics/mine.exr")), overwrite=overwrite)
+        self.assertEqual((home / "mine.exr").read_bytes(), b"mine")
+        for planted in ("link", "pipe", "folder"):
+            (self.folder / ".hyades/fetched").unlink(missing_ok=True)
+            if planted == "link":
+                os.symlink(home / "fetched", self.folder / ".hyades/fetched")
+            elif planted == "pipe":
+                os.mkfifo(self.folder / ".hyades/fetched")
+            else:
+                (self.folder / ".hyades").rmdir()
+                os.symlink(home, self.folder / ".hyades")
+            with self.subTest(planted), self.assertRaises(hyades.FileRefused):
+                self.fetch(Serves(output("a.exr")))
+        self.assertEqual([one.name for one in home.iterdir()], ["mine.exr"])
+
+    def test_a_job_is_written_through_no_link(self) -> None:
+        victim = self.scratch / "victim"
+        victim.write_bytes(b"dear")
+        for pid in (os.getpid(), os.getpid() + 1):
+            os.symlink(victim, self.folder / f".robot.yaml.{pid}.part")
+        os.symlink(victim, self.folder / "robot.yaml")
+        hyades.Job(name="robot").write(self.folder / "robot.yaml")
+        self.assertEqual(victim.read_bytes(), b"dear")
+        self.assertIn("robot", (self.folder / "robot.yaml").read_text())
+        home = self.scratch / "home"
+        home.mkdir()
+        os.symlink(home, self.folder / "assets")
+        job = hyades.Job(name="robot")
+        corners = numpy.array([[0, 0, 0], [1, 0, 0], [0, 1, 0]], dtype="float32")
+        mesh = hyades.MeshData(corners, numpy.array([[0, 1, 2]]))
+        job.objects["a"] = hyades.objects.Mesh(mesh=mesh)
+        with self.assertRaises(OSError):
+            job.write(self.folder / "robot.yaml")
+        self.assertEqual(list(home.iterdir()), [])
 
     def test_other_bytes_than_promised_get_no_name(self) -> None:
         with self.assertRaises(hyades.FileRefused):

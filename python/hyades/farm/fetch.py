@@ -9,6 +9,7 @@ from pathlib import Path
 from urllib.parse import quote
 
 from ..errors import FarmError, FileRefused
+from ..files import stays_in_folder
 from .http import Http
 from .names import check_name
 from .states import OutputFile
@@ -23,6 +24,10 @@ class FetchRecord:
 
     def __init__(self, folder: Path) -> None:
         self._file = folder / ".hyades/fetched"
+        # What is a link, or a pipe, came with somebody's folder.
+        is_plain = self._file.is_file() and not self._file.is_symlink()
+        if self._file.parent.is_symlink() or (os.path.lexists(self._file) and not is_plain):
+            raise FileRefused(f"{self._file}: expected what hyades has made there, no link and no pipe")
         text = self._file.read_text(encoding="utf-8", errors="replace") if self._file.exists() else ""
         self._paths = set(text.split("\n")[:-1])  # the last line may have been cut short
 
@@ -67,6 +72,8 @@ class Fetcher:
         if len(file.sha256) != 64 or not all(c in "0123456789abcdef" for c in file.sha256):
             raise FileRefused(f"{file.id}: the coordinator names no SHA-256")
         target = self._folder / file.id
+        if not stays_in_folder(self._folder, target):
+            raise FileRefused(f"{target}: a link leads it out of the folder that is written to")
         if _is_complete(target, file):
             return target
         if not self._overwrite and not self._record.has(file.id) and os.path.lexists(target):

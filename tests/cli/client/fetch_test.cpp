@@ -1,4 +1,6 @@
 // What fetch brings, and what it says of what it does not.
+#include <sys/stat.h>
+
 #include "tests/cli/client/client_testing.h"
 
 namespace hyades::cli {
@@ -138,6 +140,33 @@ TEST_F(Client, FetchStaysInItsFolder) {
   for (const char* good : {"a.exr", "a/b.exr", "..a", "a/..b"})
     EXPECT_TRUE(is_safe_output(good)) << good;
   EXPECT_FALSE(is_safe_output("a\nb.exr"));
+}
+
+TEST_F(Client, FetchFollowsNoLinkOutOfItsFolder) {
+  add_job("a", v1::JOB_STATE_DONE);
+  farm_.outputs["pics/mine.exr"] = "evil";
+  const std::string out = folder_.file("out");
+  fs::create_directories(folder_.file("home"));
+  std::ofstream(folder_.file("home/mine.exr")) << "mine";
+  // As a folder from a stranger may be: with a record that says who wrote what.
+  fs::create_directories(out + "/.hyades");
+  std::ofstream(out + "/.hyades/fetched") << "pics/mine.exr\n";
+  fs::create_symlink(folder_.file("home"), out + "/pics");
+  for (const char* more : {"--quiet", "--overwrite"}) {
+    const Ran ran = run(fetch_command, at({"a", "--output", out, more}));
+    EXPECT_EQ(ran.status, kFailed);
+    EXPECT_TRUE(has(ran.err, "pics: a link that leads out of the folder")) << ran.err;
+  }
+  EXPECT_EQ(read_file(folder_.file("home/mine.exr")), "mine");
+  farm_.outputs = {{"b.exr", "good"}};
+  fs::remove_all(out + "/.hyades");
+  fs::create_symlink(folder_.file("home"), out + "/.hyades");
+  EXPECT_EQ(run(fetch_command, at({"a", "--output", out})).status, kFailed);
+  EXPECT_FALSE(fs::exists(folder_.file("home/fetched")));
+  fs::remove(out + "/.hyades");
+  fs::create_directories(out + "/.hyades");
+  ASSERT_EQ(::mkfifo((out + "/.hyades/fetched").c_str(), 0600), 0);
+  EXPECT_EQ(run(fetch_command, at({"a", "--output", out})).status, kFailed) << "it waits for ever";
 }
 
 }  // namespace

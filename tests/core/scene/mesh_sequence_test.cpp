@@ -195,13 +195,15 @@ TEST(MeshFiles, KnowTheirNames) {
   time.frame = 12.0;
   EXPECT_EQ(mesh_file_at("f/a.####.ply", time), "f/a.0012.ply");
   EXPECT_EQ(mesh_file_at("a.ply", time), "a.ply");
-  EXPECT_TRUE(is_of_sequence("a.##.ply", "a.07.ply"));
-  EXPECT_TRUE(is_of_sequence("a.##.ply", "a.123.ply"));
-  EXPECT_FALSE(is_of_sequence("a.##.ply", "a.7.ply"));
-  EXPECT_FALSE(is_of_sequence("a.##.ply", "a.007.ply"));
-  EXPECT_FALSE(is_of_sequence("a.##.ply", "a.x.ply"));
-  EXPECT_FALSE(is_of_sequence("a.##.ply", "b.07.ply"));
-  EXPECT_FALSE(is_of_sequence("a.##.ply", "a."));
+  Job job;
+  job.frames.first = 8;
+  job.frames.last = 10;
+  job.frames.step = 2;
+  EXPECT_THAT(sequence_files(job, {"a.##.ply", "b.#.#.ply"}),
+              testing::ElementsAre("a.08.ply", "a.10.ply", "b.10.10.ply", "b.8.8.ply"));
+  job.frames.shutter = 0.5F;
+  EXPECT_THAT(sequence_files(job, {"a.##.ply"}),
+              testing::ElementsAre("a.08.ply", "a.09.ply", "a.10.ply", "a.11.ply"));
 }
 
 }  // namespace
