@@ -36,8 +36,13 @@ std::optional<Marked> marked(const std::string& step) {
   return Marked{step.substr(0, first), step.substr(std::max(after_frame, after_tile))};
 }
 
-/// Where nobody can tell what a link leads to, the system may open it all the same: what a name
-/// stands for may be longer than any name.
+/// Whether the system finds what nobody can tell the way to: what a name stands for may be longer
+/// than any name, or have no name any more (/proc).
+bool opens(const fs::path& path) {
+  std::error_code none;
+  return fs::exists(path, none);
+}
+
 Error unknown(const std::string& file, const std::string& way, const std::error_code& why) {
   return Error{
       file + ": whether it lies in the scene's folder cannot be told: " + way.substr(0, 200) +
@@ -93,7 +98,11 @@ class Meant {
       if (meant) names.push_back(std::move(name));
     }
     // One that may not be listed may have links that are opened by their names.
-    if (failed && !is_not_there(failed)) return unknown(file_, way, failed);
+    if (failed && !is_not_there(failed) && opens(folder_ / way)) {
+      // Linux may count the links of a way twice where others rename files meanwhile.
+      const bool is_long = failed == std::errc::too_many_symbolic_link_levels;
+      return is_long ? too_many() : unknown(file_, way, failed);
+    }
     return {};
   }
 
@@ -119,14 +128,11 @@ Status SceneLinks::check_one(const std::string& base, const std::string& file) c
   std::error_code failed;
   const fs::path start = fs::path(folder_) / base;
   const fs::path home = fs::canonical(start.empty() ? "." : start, failed);
-  if (failed) return is_not_there(failed) ? Status{} : unknown(file, start.string(), failed);
-  const fs::path target = fs::canonical(fs::path(folder_) / file, failed);
   if (failed) {
-    // The system opens some that have no name any more, through /proc.
-    std::error_code none;
-    const bool opens = fs::exists(fs::path(folder_) / file, none);
-    return is_not_there(failed) && !opens ? Status{} : unknown(file, file, failed);
+    return opens(start.empty() ? "." : start) ? unknown(file, start.string(), failed) : Status{};
   }
+  const fs::path target = fs::canonical(fs::path(folder_) / file, failed);
+  if (failed) return opens(fs::path(folder_) / file) ? unknown(file, file, failed) : Status{};
   if (is_inside(target, home)) return {};
   // The first link on the way that leads out is the one to tell.
   fs::path way = start;

@@ -141,8 +141,10 @@ Outcome FetchTarget::check_name(const std::string& path) const {
                                 ": hidden files, and names that begin with '-', are not written "
                                 "(--hidden writes them)"};
   }
-  // The folder may have come with somebody's scene.
-  if (auto stays = core::stays_in_folder(folder, folder + "/" + path); !stays) {
+  // The folder may have come with somebody's scene. A link that has the file's own name is
+  // replaced, not followed.
+  const fs::path parent = (fs::path(folder) / path).parent_path();
+  if (auto stays = core::stays_in_folder(folder, (parent / ".part").string()); !stays) {
     return Failure{kFailed, stays.error().message};
   }
   return std::nullopt;

@@ -20,6 +20,7 @@
 #include "cli/frame_range.h"
 #include "cli/transfer_display.h"
 #include "cli/written_file.h"
+#include "core/base/folder_links.h"
 #include "core/base/hash.h"
 #include "core/base/text.h"
 #include "core/film/film_codec.h"
@@ -112,6 +113,10 @@ Outcome fetch_film(FarmClient& client, uint64_t id, const FetchOptions& options)
   std::error_code failed;
   std::filesystem::create_directories(options.folder, failed);
   const std::string path = options.folder + "/" + name;
+  // Films are written through links.
+  if (auto stays = core::stays_in_folder(options.folder, path); !stays) {
+    return Failure{kFailed, stays.error().message};
+  }
   if (auto failure = target.record.add(name)) return failure;
   auto written = core::write_film_exr(path, {std::move(*info), std::move(*film)});
   if (!written) return Failure{kFailed, written.error().message};
