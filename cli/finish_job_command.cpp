@@ -152,11 +152,8 @@ int finish_job_command(int argc, char** argv) {
   if (const auto display = frames.load_display(); !display) return fail(display.error().message);
   std::vector<int32_t> numbers;
   for (const auto& [frame, paths] : films) numbers.push_back(frame);
-  if (const auto stays = frames.check_output_links(numbers); !stays) {
-    return fail(stays.error().message);
-  }
-  if (!options.overwrite) {
-    if (const auto own = frames.check_own_outputs(numbers); !own) return fail(own.error().message);
+  if (const auto may = frames.check_outputs(numbers, options.overwrite); !may) {
+    return fail(may.error().message);
   }
 
   watch_for_interrupts();

@@ -67,25 +67,35 @@ std::string described(const CLI::Option* option, bool is_positional) {
   return others.empty() ? text : text + others + ")";
 }
 
+/// Appends `text` to a line that has `column` columns, of which `indent` are empty on each line.
+void append_words(std::string& all, const std::string& text, size_t column, size_t indent) {
+  std::istringstream words(text);
+  const size_t width = columns();
+  for (std::string word; words >> word;) {
+    if (column > indent && column + 1 + word.size() > width) {
+      all += "\n" + std::string(indent, ' ');
+      column = indent;
+    }
+    if (column > indent) {
+      all += ' ';
+      ++column;
+    }
+    all += word;
+    column += word.size();
+  }
+  all += '\n';
+}
+
 /// Each line of `text` in as many as it needs; those that are indented are to be copied and stay.
 std::string wrapped(const std::string& text) {
   std::string all;
   std::istringstream lines(text);
-  const size_t width = columns();
   for (std::string line; std::getline(lines, line);) {
-    if (line.starts_with(' ') || line.size() <= width) {
+    if (line.starts_with(' ')) {
       all += line + "\n";
-      continue;
+    } else {
+      append_words(all, line, 0, 0);
     }
-    std::istringstream words(line);
-    size_t column = 0;
-    for (std::string word; words >> word;) {
-      const bool begins = column == 0 || column + 1 + word.size() > width;
-      if (begins && column > 0) all += '\n';
-      all += (begins ? "" : " ") + word;
-      column = begins ? word.size() : column + 1 + word.size();
-    }
-    all += '\n';
   }
   return all;
 }
@@ -93,29 +103,13 @@ std::string wrapped(const std::string& text) {
 /// `text` in the column beside `names`.
 std::string beside(const std::string& names, const std::string& text) {
   std::string all = "  " + names;
-  size_t column = all.size();
-  const auto next_line = [&] {
+  if (all.size() + 2 > kNames) {
     all += "\n" + std::string(kNames, ' ');
-    column = kNames;
-  };
-  if (column + 2 > kNames) {
-    next_line();
   } else {
-    all.append(kNames - column, ' ');
-    column = kNames;
+    all.append(kNames - all.size(), ' ');
   }
-  std::istringstream words(text);
-  const size_t width = columns();
-  for (std::string word; words >> word;) {
-    if (column > kNames && column + 1 + word.size() > width) next_line();
-    if (column > kNames) {
-      all += ' ';
-      ++column;
-    }
-    all += word;
-    column += word.size();
-  }
-  return all + "\n";
+  append_words(all, text, kNames, kNames);
+  return all;
 }
 
 }  // namespace

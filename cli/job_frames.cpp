@@ -90,19 +90,7 @@ core::Status JobFrames::check_film_names() const {
   return {};
 }
 
-core::Status JobFrames::check_output_links(const std::vector<int32_t>& frames) const {
-  core::FolderLinks links(options_.folder);
-  for (const std::string& path : all_paths(frames)) {
-    if (auto stays = links.check(path); !stays) return stays;
-  }
-  return {};
-}
-
-core::Status JobFrames::check_own_outputs(const std::vector<int32_t>& frames) const {
-  return check_own_files(all_paths(frames), loaded_.job.name);
-}
-
-std::vector<std::string> JobFrames::all_paths(const std::vector<int32_t>& frames) const {
+core::Status JobFrames::check_outputs(const std::vector<int32_t>& frames, bool overwrite) const {
   std::vector<std::string> paths;
   for (const int32_t frame : frames) {
     for (std::string& path : output_paths(frame)) paths.push_back(std::move(path));
@@ -110,7 +98,11 @@ std::vector<std::string> JobFrames::all_paths(const std::vector<int32_t>& frames
   if (!options_.only_films) {
     for (const std::filesystem::path& video : video_paths()) paths.push_back(video.string());
   }
-  return paths;
+  core::FolderLinks links(options_.folder);
+  for (const std::string& path : paths) {
+    if (auto stays = links.check(path); !stays) return stays;
+  }
+  return overwrite ? core::Status{} : check_own_files(paths, loaded_.job.name);
 }
 
 std::string JobFrames::below_folder(const std::string& path) const {

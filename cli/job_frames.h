@@ -49,12 +49,9 @@ class JobFrames : public coordinator::FrameSource, public coordinator::FrameSink
   /// An error where the frames' films and an output of the job would be the same file.
   core::Status check_film_names() const;
 
-  /// An error where a link would lead outputs of `frames`, or videos of them, out of their folder.
-  core::Status check_output_links(const std::vector<int32_t>& frames) const;
-
-  /// An error where outputs of `frames`, or videos of them, are there that another job has made, or
-  /// another program.
-  core::Status check_own_outputs(const std::vector<int32_t>& frames) const;
+  /// An error where a link would lead outputs of `frames`, or videos of them, out of their folder;
+  /// and, but for `overwrite`, where some are there that another job has made, or another program.
+  core::Status check_outputs(const std::vector<int32_t>& frames, bool overwrite) const;
 
   /// Opens the colour configuration, which write_outputs() needs.
   core::Status load_display();
@@ -100,8 +97,6 @@ class JobFrames : public coordinator::FrameSource, public coordinator::FrameSink
   std::string below_folder(const std::string& path) const;
   std::string film_path(int32_t frame) const;
   std::vector<std::filesystem::path> video_paths() const;
-  /// All outputs and videos of the frames.
-  std::vector<std::string> all_paths(const std::vector<int32_t>& frames) const;
   void note(int32_t frame, const core::RenderCounters& counters);
 
   LoadedJob& loaded_;

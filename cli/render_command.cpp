@@ -1,6 +1,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <chrono>
 #include <cstdint>
 #include <cstdio>
@@ -30,6 +31,7 @@
 #include "coordinator/scheduler/tile_grid.h"
 #include "core/base/atomic_file.h"
 #include "core/base/folder_links.h"
+#include "core/base/io_reason.h"
 #include "core/base/text.h"
 #include "core/job/layers.h"
 #include "core/job/noise_threshold.h"
@@ -132,7 +134,7 @@ int report(const RenderOptions& options, const FilmRoom& room, const JobFrames& 
   const bool full =
       std::any_of(outcome.failures.begin(), outcome.failures.end(),
                   [](const coordinator::FrameFailure& failure) {
-                    return failure.reason.find("the disk is full") != std::string::npos;
+                    return failure.reason.find(core::io_reason(ENOSPC)) != std::string::npos;
                   });
   if (!outcome.error.empty() || full) note_kept(options, room);
   if (!outcome.error.empty()) return 1;
@@ -407,11 +409,8 @@ int render_command(int argc, char** argv) {
   if (const auto ready = load_inputs(frames, !options.restart, numbers->front()); !ready) {
     return refuse(ready.error());
   }
-  if (const auto stays = frames.check_output_links(*numbers); !stays) {
-    return refuse(stays.error());
-  }
-  if (!options.overwrite) {
-    if (const auto own = frames.check_own_outputs(*numbers); !own) return refuse(own.error());
+  if (const auto may = frames.check_outputs(*numbers, options.overwrite); !may) {
+    return refuse(may.error());
   }
   warn_of_full_disk(options, room);
   return run_frames(options, job, room, *numbers, frames, note, kept);

@@ -1,6 +1,5 @@
 #include "cli/videos.h"
 
-#include <algorithm>
 #include <cstddef>
 #include <cstdio>
 #include <filesystem>
@@ -37,9 +36,7 @@ core::Result<size_t> pictures_of_light(const core::Job& job, const core::VideoDe
                                        const core::VideoFrames& frames) {
   const core::OutputDesc* light = core::light_of_pictures(job, video);
   if (light == nullptr) return size_t{0};
-  const auto own =
-      std::find_if(job.outputs.begin(), job.outputs.end(),
-                   [&](const core::OutputDesc& output) { return output.file == video.pictures; });
+  const core::OutputDesc* own = core::own_pictures(job, video);
   std::vector<std::pair<std::string, std::string>> missing;  // the light, and its picture
   for (const int32_t number : frames.numbers) {
     const std::string picture = core::output_path(*own, frames.folder, number);

@@ -20,7 +20,7 @@ void ignore_file_size_signal();
 /// Seconds of a processor's time that the calling thread has used.
 double thread_seconds();
 
-/// The same of another thread, by its clock (pthread_getcpuclockid()).
+/// Processor time of a thread, s, by its clock (pthread_getcpuclockid()).
 double processor_seconds(clockid_t clock);
 
 /// The folder of the running program, with a "/" at its end; its fellow programs lie beside it.

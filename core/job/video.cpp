@@ -19,12 +19,6 @@ std::string range_in_words(const std::vector<int32_t>& numbers, int32_t step) {
                      step > 1 ? fmt::format("x{}", step) : "");
 }
 
-/// The output that leaves the pictures of `video`.
-std::vector<OutputDesc>::const_iterator own_pictures(const Job& job, const VideoDesc& video) {
-  return std::find_if(job.outputs.begin(), job.outputs.end(),
-                      [&](const OutputDesc& output) { return output.file == video.pictures; });
-}
-
 }  // namespace
 
 VideoFrames video_frames(const Job& job, std::string folder, std::vector<int32_t> numbers) {
@@ -47,13 +41,20 @@ std::vector<std::string> video_pictures(const VideoDesc& video, const VideoFrame
   return paths;
 }
 
+const OutputDesc* own_pictures(const Job& job, const VideoDesc& video) {
+  const auto own =
+      std::find_if(job.outputs.begin(), job.outputs.end(),
+                   [&](const OutputDesc& output) { return output.file == video.pictures; });
+  return own != job.outputs.end() ? &*own : nullptr;
+}
+
 std::vector<std::string> alike_pictures(const Job& job, const VideoDesc& video) {
-  const auto own = own_pictures(job, video);
+  const OutputDesc* own = own_pictures(job, video);
   std::vector<std::string> lossless = {video.pictures};
   std::vector<std::string> lossy;
   for (const OutputDesc& output : job.outputs) {
     const std::string ending = file_extension(output.file);
-    if (own == job.outputs.end() || &output == &*own || ending == ".exr" || output.transparent ||
+    if (own == nullptr || &output == own || ending == ".exr" || output.transparent ||
         output.layers != own->layers || output.tone_map != own->tone_map ||
         output.exposure != own->exposure || output.denoise != own->denoise) {
       continue;
@@ -65,9 +66,9 @@ std::vector<std::string> alike_pictures(const Job& job, const VideoDesc& video) 
 }
 
 const OutputDesc* light_of_pictures(const Job& job, const VideoDesc& video) {
-  const auto own = own_pictures(job, video);
+  const OutputDesc* own = own_pictures(job, video);
   // An EXR has a denoised picture as a layer of its own.
-  if (own == job.outputs.end() || own->denoise != "false" || job.color) return nullptr;
+  if (own == nullptr || own->denoise != "false" || job.color) return nullptr;
   const std::string layer = own->layers.empty() ? "beauty" : own->layers.front();
   for (const OutputDesc& output : job.outputs) {
     if (file_extension(output.file) != ".exr") continue;

@@ -20,6 +20,9 @@ struct VideoFrames {
 /// speed: where every second one is left out, `rate` is half the job's fps.
 VideoFrames video_frames(const Job& job, std::string folder, std::vector<int32_t> numbers);
 
+/// The output of the job that leaves the pictures of `video`; nullptr where there is none.
+const OutputDesc* own_pictures(const Job& job, const VideoDesc& video);
+
 /// The outputs of the job whose files look like the pictures of `video`, whose own come first: the
 /// same layer, exposure and tone map, no alpha. The less is lost in them the sooner they come.
 std::vector<std::string> alike_pictures(const Job& job, const VideoDesc& video);
