@@ -16,6 +16,7 @@
 #include "cli/film_room.h"
 #include "cli/frame_range.h"
 #include "cli/load_job.h"
+#include "cli/sample_cost.h"
 #include "coordinator/local/local_plan.h"
 #include "coordinator/scheduler/run_length.h"
 #include "coordinator/scheduler/tile_grid.h"
@@ -33,7 +34,7 @@
 namespace hyades::cli {
 namespace {
 
-constexpr auto kProbeTime = std::chrono::milliseconds(700);
+constexpr double kProbeSeconds = 0.7;
 
 /// Reads all files that the job names and complains about what is wrong in them: of a good job,
 /// those of its scene into `cache`; what nothing uses is not kept.
@@ -65,25 +66,6 @@ uint64_t units_per_frame(const core::Job& job, const coordinator::LocalPlan& pla
   const uint64_t run = coordinator::run_length(std::max(batch, 1e-12), plan.unit_time, all,
                                                static_cast<uint64_t>(core::hardware_threads()));
   return grid.size() * ((batches + run - 1) / run);
-}
-
-/// Seconds of one core that a sample of `renderer` takes, measured on small patches scattered over
-/// the window. What else the machine does is not counted.
-double seconds_per_sample(const core::FrameRenderer& renderer, const core::PixelRect& window,
-                          int32_t frame) {
-  using Clock = std::chrono::steady_clock;
-  constexpr int kPatch = 4;
-  const auto begin = Clock::now();
-  const double cpu_begin = core::thread_seconds();
-  uint64_t samples = 0;
-  for (uint64_t i = 0; samples == 0 || Clock::now() - begin < kProbeTime; ++i) {
-    const uint64_t h = core::mix64(i + 1);
-    const int x = window.x0 + static_cast<int>(h % static_cast<uint64_t>(window.width()));
-    const int y = window.y0 + static_cast<int>((h >> 32) % static_cast<uint64_t>(window.height()));
-    const core::PixelRect patch = intersection(window, {x, y, x + kPatch, y + kPatch});
-    samples += renderer.render({frame, patch, {0, 1}}).counters.samples;
-  }
-  return (core::thread_seconds() - cpu_begin) / static_cast<double>(samples);
 }
 
 /// "1,234,567", or "4.5e+22" of what is beyond exact counting.
@@ -241,7 +223,10 @@ core::Status print_summary(const CheckOptions& options, const core::Job& job,
   std::printf("%s: good\n", options.path.c_str());
   print_contents(job, **scene, samples);
   std::optional<double> seconds;
-  if (!options.no_probe) seconds = seconds_per_sample(renderer, window, job.frames.first);
+  if (!options.no_probe) {
+    seconds =
+        measure_sample_cost(renderer, window, job.frames.first, 1, kProbeSeconds).core_seconds;
+  }
   print_units(job, layers.splats, seconds);
   print_memory(job, **scene);
   if (seconds) {

@@ -12,6 +12,7 @@
 #include <fmt/format.h>
 
 #include "cli/own_files.h"
+#include "cli/sample_cost.h"
 #include "core/base/folder_links.h"
 #include "core/base/hash.h"
 #include "core/base/leftovers.h"
@@ -139,6 +140,15 @@ core::Result<std::vector<std::string>> JobFrames::load_first(int32_t frame) {
   first_frame_ = frame;
   first_scene_ = std::move(*scene);
   return first_scene_->warnings;
+}
+
+core::Result<double> JobFrames::seconds_per_sample(int32_t frame, int threads, double seconds) {
+  auto scene = first_scene_ != nullptr && frame == first_frame_
+                   ? core::Result<std::shared_ptr<const core::Scene>>(first_scene_)
+                   : core::build_scene(loaded_.job, frame, cache_);
+  if (!scene) return scene.error();
+  const core::FrameRenderer renderer(*scene, loaded_.job, frame, layers_);
+  return measure_sample_cost(renderer, options_.window, frame, threads, seconds).seconds;
 }
 
 core::Result<std::shared_ptr<const coordinator::FrameWork>> JobFrames::prepare(int32_t frame) {

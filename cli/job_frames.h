@@ -64,6 +64,10 @@ class JobFrames : public coordinator::FrameSource, public coordinator::FrameSink
   /// known before anything is written. prepare() gives it out. Returns its warnings.
   core::Result<std::vector<std::string>> load_first(int32_t frame);
 
+  /// Seconds by the clock that a sample of the frame takes where `threads` threads render, measured
+  /// for about `seconds`.
+  core::Result<double> seconds_per_sample(int32_t frame, int threads, double seconds);
+
   core::Result<std::shared_ptr<const coordinator::FrameWork>> prepare(int32_t frame) override;
   core::Status finish(int32_t frame, const core::Film& film) override;
   bool outputs_exist(int32_t frame) override;
@@ -86,6 +90,9 @@ class JobFrames : public coordinator::FrameSource, public coordinator::FrameSink
   /// videos.
   void remove_leftovers(const std::vector<int32_t>& frames,
                         std::filesystem::file_time_type before) const;
+
+  /// What is rendered of each frame.
+  const core::PixelRect& window() const { return options_.window; }
 
   RunTotals totals() const;
 

@@ -11,7 +11,6 @@
 namespace hyades::cli {
 namespace {
 
-constexpr uint32_t kMostSamples = 1U << 24U;
 constexpr uint32_t kMostTiles = 1'000'000;
 /// Pixels of a part, on average.
 constexpr int64_t kSmallestTile = 256;

@@ -16,6 +16,9 @@ struct SampleRange {
   uint32_t last = 0;
 };
 
+/// Samples that a pixel has at most.
+inline constexpr uint32_t kMostSamples = 1U << 24U;
+
 /// What --samples says: how many a pixel gets, and which of them are rendered.
 struct SamplesOption {
   uint32_t of = 0;  ///< 0: as many as the job says

@@ -33,7 +33,7 @@ std::string ProgressDisplay::line(const coordinator::Progress& p) const {
     text += fmt::format("  frame {}/{}", std::min(p.frames_done + 1, p.frames), p.frames);
   // In front: a line that is cut to the terminal's width still says why nothing happens.
   if (!p.trouble.empty()) return text + "  " + p.trouble;
-  if (p.samples_per_second > 0.0) text += "  " + core::format_sample_rate(p.samples_per_second);
+  if (p.samples_per_second > 0.0) text += "  " + core::format_rate(p.samples_per_second, "samples");
   if (p.noise >= 0.0) text += "  noise " + core::format_noise(p.noise);
   if (p.noise_aim > 0.0) text += " (aim " + core::format_noise(p.noise_aim) + ")";
   if (p.seconds_left >= 0.0) text += "  " + core::format_time_left(p.seconds_left) + " left";

@@ -26,6 +26,7 @@
 #include "cli/output_note.h"
 #include "cli/progress_display.h"
 #include "cli/render_options.h"
+#include "cli/time_limit.h"
 #include "cli/videos.h"
 #include "coordinator/local/local_run.h"
 #include "coordinator/scheduler/tile_grid.h"
@@ -154,11 +155,11 @@ int report(const RenderOptions& options, const FilmRoom& room, const JobFrames& 
   }
   const auto samples = static_cast<double>(totals.counters.samples);
   if (!options.quiet && !written.empty() && samples > 0) {
-    std::fprintf(stderr, "%s, %s, %.2f Mrays/s, %.1f rays per sample\n",
+    const auto rays = static_cast<double>(totals.counters.rays);
+    std::fprintf(stderr, "%s, %s, %s, %.1f rays per sample\n",
                  core::format_duration(progress.elapsed).c_str(),
-                 core::format_sample_rate(samples / progress.elapsed).c_str(),
-                 static_cast<double>(totals.counters.rays) / progress.elapsed * 1e-6,
-                 static_cast<double>(totals.counters.rays) / samples);
+                 core::format_rate(samples / progress.elapsed, "samples").c_str(),
+                 core::format_rate(rays / progress.elapsed, "rays").c_str(), rays / samples);
   }
   return outcome.failures.empty() ? 0 : 1;
 }
@@ -284,6 +285,7 @@ void remove_kept(const RenderOptions& options, const std::string& kept) {
   std::error_code ignored;
   std::filesystem::remove_all(kept, ignored);
   std::filesystem::remove(kept + ".outputs", ignored);
+  std::filesystem::remove(kept + ".time", ignored);
   // Only where no other job is in it.
   std::filesystem::remove(options.folder + "/.hyades", ignored);
 }
@@ -329,10 +331,22 @@ void note_begun(const coordinator::Progress& progress) {
   }
 }
 
+/// Gives the job as many samples as --time has room for.
+core::Status keep_to_time(const RenderOptions& options, TimeLimit& limit, JobFrames& frames,
+                          const std::vector<int32_t>& numbers, core::Job& job) {
+  const auto chosen = limit.samples(frames, numbers);
+  if (!chosen) return chosen.error();
+  job.sampling.samples = *chosen;
+  if (options.quiet) return {};
+  std::fprintf(stderr, "--time: %u samples per pixel (--samples %u renders the same)\n", *chosen,
+               *chosen);
+  return {};
+}
+
 /// Renders what has been found good; the exit status.
 int run_frames(const RenderOptions& options, const core::Job& job, const FilmRoom& room,
                const std::vector<int32_t>& numbers, JobFrames& frames, const OutputNote& note,
-               const std::string& kept) {
+               const TimeLimit& limit, const std::string& kept) {
   const auto begin = std::filesystem::file_time_type::clock::now();
   std::error_code failed;
   std::filesystem::create_directories(options.folder, failed);
@@ -361,6 +375,7 @@ int run_frames(const RenderOptions& options, const core::Job& job, const FilmRoo
   // The log is ours now, so nobody else writes these files.
   frames.remove_leftovers(numbers, begin);
   note.write();
+  limit.write();
   for (const std::string& problem : run.log_problems()) {
     std::fprintf(stderr, "%s\n", problem.c_str());
   }
@@ -382,6 +397,7 @@ int run_frames(const RenderOptions& options, const core::Job& job, const FilmRoo
 
 /// `hyades render job.yaml`.
 int render_command(int argc, char** argv) {
+  const auto began = std::chrono::steady_clock::now();
   RenderOptions options;
   if (const auto status = parse_render_options(argc, argv, options)) return *status;
   auto loaded = load_for_render(options);
@@ -413,7 +429,12 @@ int render_command(int argc, char** argv) {
     return refuse(may.error());
   }
   warn_of_full_disk(options, room);
-  return run_frames(options, job, room, *numbers, frames, note, kept);
+  TimeLimit limit(options, kept + ".time", began);
+  if (options.time > 0) {
+    const auto chosen = keep_to_time(options, limit, frames, *numbers, loaded->job);
+    if (!chosen) return refuse(chosen.error());
+  }
+  return run_frames(options, job, room, *numbers, frames, note, limit, kept);
 }
 
 }  // namespace hyades::cli

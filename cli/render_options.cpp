@@ -13,6 +13,7 @@
 
 #include "cli/address_option.h"
 #include "cli/command_line.h"
+#include "cli/duration_option.h"
 #include "cli/film_size_option.h"
 #include "cli/frame_range.h"
 #include "cli/number_range.h"
@@ -89,11 +90,18 @@ void declare_what(CLI::App& app, RenderOptions& options, Words& words) {
                  "frames to render: 7, 1-10 or 1-10x2 (default: all; at most a million)")
       ->check(no_frames_error)
       ->type_name("RANGE");
-  app.add_option("--samples", words.samples,
-                 "samples per pixel (default: the job's); 0-31, or 0-31/256: only these of them, "
-                 "whole batches of 16, which writes only films")
-      ->check(is_right<parse_samples>)
-      ->type_name("N");
+  auto* samples =
+      app.add_option(
+             "--samples", words.samples,
+             "samples per pixel (default: the job's); 0-31, or 0-31/256: only these of them, "
+             "whole batches of 16, which writes only films")
+          ->check(is_right<parse_samples>)
+          ->type_name("N");
+  add_duration(app, "--time", options.time,
+               "as many samples per pixel as all frames can have in about this time (90s, 10m, "
+               "2h), however many the job says",
+               1)
+      ->excludes(samples);
   app.add_option("--tile", words.tile, "2/3: only this part of each frame, which writes only films")
       ->check(is_right<parse_tile>)
       ->type_name("I/N");
@@ -169,6 +177,7 @@ std::optional<int> parse_render_options(int argc, char** argv, RenderOptions& op
       "  hyades render jobs/quickstart/job.yaml\n"
       "  hyades render jobs/perlin-sphere/job.yaml --frames 1-24 --output out\n"
       "  hyades render jobs/atlas/job.yaml --preview\n"
+      "  hyades render jobs/atlas/job.yaml --time 20m\n"
       "  hyades render jobs/cornell/job.yaml --display 127.0.0.1:14158\n"
       "  hyades render robot.glb --samples 64\n"
       "  hyades render bottles.obj --media media.json\n"
@@ -226,6 +235,9 @@ std::optional<LoadedJob> load_for_render(const RenderOptions& options) {
   };
   if (options.is_part() && options.preview > 0) {
     return complain("--preview: expected no --tile and no --samples of a range beside it");
+  }
+  if (options.time > 0 && (options.is_part() || options.preview > 0)) {
+    return complain("--time: expected no --tile and no --preview beside it");
   }
   if (options.tile) {
     const core::PixelRect whole = crop_of(options, job);

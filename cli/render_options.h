@@ -22,6 +22,7 @@ struct RenderOptions {
   SceneOptions scene;
   int threads = core::hardware_threads();
   SamplesOption samples;
+  double time = 0;  ///< seconds that all frames shall take; 0: as long as their samples take
   std::optional<TileOption> tile;
   uint64_t film_memory = 0;  ///< bytes; 0: what the machine is good for
   uint64_t texture_memory = core::TexelStore::default_budget();  ///< bytes

@@ -115,7 +115,7 @@ void print_status(const v1::GetJobResponse& response, bool all) {
   if (job_look(job) == "running") {
     print_line("now",
                fmt::format("{} with workers, {}, {} left", core::counted(job.leased(), "unit"),
-                           core::format_sample_rate(job.samples_per_second()), left_text(job)));
+                           core::format_rate(job.samples_per_second(), "samples"), left_text(job)));
   }
   print_line("submitted", format_time(job.submitted_ms()));
   if (job.begun_ms() != 0) print_line("begun", format_time(job.begun_ms()));

@@ -102,7 +102,7 @@ class Page {
 };
 
 std::string speed_text(double samples) {
-  return samples > 0 ? core::format_sample_rate(samples) : "-";
+  return samples > 0 ? core::format_rate(samples, "samples") : "-";
 }
 
 std::string bar(double share, int columns) {

@@ -108,15 +108,15 @@ std::string format_time_left(double seconds) {
   return fmt::format("{:.0f} s", seconds > 0.0 ? std::max(seconds, 1.0) : 0.0);
 }
 
-std::string format_sample_rate(double per_second) {
-  const char* unit = "samples/s";
-  for (const char* larger : {"ksamples/s", "Msamples/s", "Gsamples/s"}) {
+std::string format_rate(double per_second, std::string_view what) {
+  const char* prefix = "";
+  for (const char* larger : {"k", "M", "G"}) {
     if (per_second < 999.5) break;
     per_second *= 1e-3;
-    unit = larger;
+    prefix = larger;
   }
   const int decimals = per_second < 9.995 ? 2 : per_second < 99.95 ? 1 : 0;
-  return fmt::format("{:.{}f} {}", per_second, decimals, unit);
+  return fmt::format("{:.{}f} {}{}/s", per_second, decimals, prefix, what);
 }
 
 std::string format_noise(double noise) {

@@ -38,8 +38,8 @@ std::string format_duration(double seconds);
 /// "4 min 05 s".
 std::string format_time_left(double seconds);
 
-/// A rate of samples, with three digits: "850 samples/s", "12.3 ksamples/s", "2.35 Msamples/s".
-std::string format_sample_rate(double per_second);
+/// A rate of what is named, with three digits: "850 samples/s", "12.3 ksamples/s", "2.35 Mrays/s".
+std::string format_rate(double per_second, std::string_view what);
 
 /// A noise (core/film/noise.h) with two digits: "0.016", "1.6", "160".
 std::string format_noise(double noise);

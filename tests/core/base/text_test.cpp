@@ -91,12 +91,13 @@ TEST(Text, GuessesOfTimeAreWholeSeconds) {
 }
 
 TEST(Text, RatesHaveThreeDigits) {
-  EXPECT_EQ(format_sample_rate(0.0), "0.00 samples/s");
-  EXPECT_EQ(format_sample_rate(850.0), "850 samples/s");
-  EXPECT_EQ(format_sample_rate(999.6), "1.00 ksamples/s");
-  EXPECT_EQ(format_sample_rate(12'340.0), "12.3 ksamples/s");
-  EXPECT_EQ(format_sample_rate(2.346e6), "2.35 Msamples/s");
-  EXPECT_EQ(format_sample_rate(5e12), "5000 Gsamples/s");
+  EXPECT_EQ(format_rate(0.0, "samples"), "0.00 samples/s");
+  EXPECT_EQ(format_rate(850.0, "samples"), "850 samples/s");
+  EXPECT_EQ(format_rate(999.6, "samples"), "1.00 ksamples/s");
+  EXPECT_EQ(format_rate(12'340.0, "samples"), "12.3 ksamples/s");
+  EXPECT_EQ(format_rate(2.346e6, "samples"), "2.35 Msamples/s");
+  EXPECT_EQ(format_rate(5e12, "samples"), "5000 Gsamples/s");
+  EXPECT_EQ(format_rate(4'200.0, "rays"), "4.20 krays/s");
 }
 
 TEST(Text, NoiseIsNeverInPowersOfTen) {

@@ -1,0 +1,21 @@
+#pragma once
+
+#include <cstdint>
+
+#include "core/base/rect.h"
+#include "core/render/frame_renderer.h"
+
+namespace hyades::cli {
+
+/// What samples of a frame cost on this machine.
+struct SampleCost {
+  double core_seconds = 0;  ///< of one core, whatever else the machine does
+  double seconds = 0;       ///< by the clock, where all `threads` render
+};
+
+/// Measures it for at least `seconds` with `threads` threads, on small patches that are scattered
+/// over `window`.
+SampleCost measure_sample_cost(const core::FrameRenderer& renderer, const core::PixelRect& window,
+                               int32_t frame, int threads, double seconds);
+
+}  // namespace hyades::cli
