@@ -137,7 +137,7 @@ struct GltfImage {
 /// Vertices or triangles of meshes and their targets that are made of a file may be this many per
 /// byte of its buffers: some accessors are shared, or sparse, but beyond it a file is not meant
 /// seriously.
-inline constexpr size_t kMostElementsPerByte = 64;
+inline constexpr size_t kMostElementsPerByte = 16;
 
 struct GltfModel {
   std::string file;  ///< for messages
@@ -159,7 +159,7 @@ struct GltfModel {
 
   /// Whether so many vertices or triangles are too many for what the file holds.
   bool is_too_much(uint64_t elements) const {
-    return elements > kMostElementsPerByte * (uint64_t{buffer_bytes} + 1024);
+    return elements > kMostElementsPerByte * (uint64_t{buffer_bytes} + 4096);
   }
 };
 
