@@ -79,10 +79,32 @@ def write_whole(path: Path, data: bytes) -> None:
         raise
 
 
+def led_to(path: str | Path) -> Path:
+    """Where links lead the path, as the system follows them; OSError where nobody can tell: below folders that are
+    deeper than any name is long, what is not strict takes links for none, and the system does not."""
+    led = Path(os.path.realpath(path, strict=True))
+    if not os.path.samestat(os.stat(path), os.stat(led)):
+        raise OSError(f"{path}: it leads elsewhere than it says")
+    return led
+
+
 def stays_in_folder(folder: Path, path: Path) -> bool:
-    """Whether no link leads `path`, below `folder` and still to be written, out of it."""
-    home = folder.resolve()
-    return home in (path.parent.resolve() / path.name).parents
+    """Whether no link leads `path`, below `folder` and still to be written, out of it, or to nobody knows where.
+    The folder itself may be a link: who names it means it."""
+    try:
+        home = led_to(folder)
+        way = folder
+        for step in path.relative_to(folder).parts[:-1]:
+            way = way / step
+            if step == ".." or way.is_symlink() and home not in (led := led_to(way), *led.parents):
+                return False
+            way.lstat()
+    except (FileNotFoundError, NotADirectoryError):
+        # From here on it is made, without links. A link to what is not there cannot be made a folder.
+        return ".." not in path.relative_to(folder).parts
+    except OSError:
+        return False
+    return True
 
 
 def _encoded(value: Any) -> tuple[bytes, str]:

@@ -1,5 +1,6 @@
 """Parts of the add-on by themselves: the receiver of pictures, joined frames, names and files of outputs."""
 
+import os
 import socket
 import struct
 import unittest
@@ -382,6 +383,25 @@ class NamedFiles(AddOnTest):
         self.assertRegex(self.exported()[1], "Blender reads no picture from the file .*stolen.png; the world is black")
         texture.image = self.image(self.wood)
         self.assertEqual(str(self.exported()[0].environment.image), str(self.wood))
+
+    def test_links_in_folders_too_deep_for_names_are_not_followed(self) -> None:
+        steps = "/".join(["d" * 250] * 12)
+        scene = self.folder / "scene"
+        (scene / steps).mkdir(parents=True)
+        (scene / "way1").symlink_to(steps)
+        os.makedirs(scene / "way1" / steps)
+        (scene / "way2").symlink_to(f"way1/{steps}")
+        # For who does not ask the system, no link can be read down there, and 25 steps up from `up` is scene/p.png.
+        below = self.key.parent / "/".join("e" * 25)
+        below.mkdir(parents=True)
+        self.key.rename(self.key.with_name("p.png"))
+        self.picture(scene / "p.png")
+        (scene / "way2/up").symlink_to(below)
+        stolen = self.link("stolen.png", "way2/up/" + "../" * 25 + "p.png")
+        self.assertIn(b"OPENSSH", stolen.read_bytes())
+        color, complaints = self.color(stolen)
+        self.assertIsInstance(color, (list, tuple))
+        self.assertIn("stolen.png", complaints)
 
     def test_volumes_are_taken_where_links_lead_to_volumes(self) -> None:
         smoke = self.folder / "smoke.vdb"

@@ -31,6 +31,16 @@ def output(name: str, content: bytes = CONTENT) -> dict:
     return {"id": name, "frame": 1, "size": len(content), "sha256": hashlib.sha256(content).hexdigest()}
 
 
+def deep_folder(folder: pathlib.Path) -> pathlib.Path:
+    """A link in `folder` to a folder that is deeper than any name is long."""
+    steps = "/".join(["d" * 250] * 12)
+    (folder / steps).mkdir(parents=True)
+    os.symlink(steps, folder / "way1")
+    os.makedirs(folder / "way1" / steps)
+    os.symlink(f"way1/{steps}", folder / "way2")
+    return folder / "way2"
+
+
 class Serves:
     """Outputs of a job: what is listed, and the bytes that come."""
 
@@ -131,6 +141,31 @@ class Fetch(unittest.TestCase):
                 self.fetch(Serves(output("a.exr")))
         self.assertEqual([one.name for one in home.iterdir()], ["mine.exr"])
 
+    def test_folders_too_deep_for_names_are_not_written_to(self) -> None:
+        home = self.scratch / "home"
+        home.mkdir()
+        deep = deep_folder(self.folder)
+        os.symlink(home, deep / "pics")
+        self.assertTrue(os.path.samefile(deep / "pics", home), "the links do not lead where the test needs them")
+        self.folder = deep
+        with self.assertRaises(hyades.FileRefused):
+            self.fetch(Serves(output("pics/a.exr")))
+        os.symlink(home, deep / "assets")
+        with self.assertRaises(OSError):
+            self.job_with_mesh().write(deep / "robot.yaml")
+        self.assertEqual(list(home.iterdir()), [])
+
+    def test_a_pipe_in_the_place_of_a_part_is_refused(self) -> None:
+        os.mkfifo(self.folder / f".a.exr.{output('a.exr')['sha256'][:16]}.part")
+        with self.assertRaises(hyades.FileRefused):
+            self.fetch(Serves(output("a.exr")))
+
+    def job_with_mesh(self) -> hyades.Job:
+        job = hyades.Job(name="robot")
+        corners = numpy.array([[0, 0, 0], [1, 0, 0], [0, 1, 0]], dtype="float32")
+        job.objects["a"] = hyades.objects.Mesh(mesh=hyades.MeshData(corners, numpy.array([[0, 1, 2]])))
+        return job
+
     def test_a_job_is_written_through_no_link(self) -> None:
         victim = self.scratch / "victim"
         victim.write_bytes(b"dear")
@@ -143,12 +178,8 @@ class Fetch(unittest.TestCase):
         home = self.scratch / "home"
         home.mkdir()
         os.symlink(home, self.folder / "assets")
-        job = hyades.Job(name="robot")
-        corners = numpy.array([[0, 0, 0], [1, 0, 0], [0, 1, 0]], dtype="float32")
-        mesh = hyades.MeshData(corners, numpy.array([[0, 1, 2]]))
-        job.objects["a"] = hyades.objects.Mesh(mesh=mesh)
         with self.assertRaises(OSError):
-            job.write(self.folder / "robot.yaml")
+            self.job_with_mesh().write(self.folder / "robot.yaml")
         self.assertEqual(list(home.iterdir()), [])
 
     def test_other_bytes_than_promised_get_no_name(self) -> None:

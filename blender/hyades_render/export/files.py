@@ -5,11 +5,16 @@ from __future__ import annotations
 import os
 from collections.abc import Set
 
+from hyades.files import led_to
+
 
 def may_be_sent(path: str, ends: Set[str]) -> bool:
     """Whether there is a file that ends in one of `ends` (".png"), and leads to one if it is a link.
 
     A .blend comes from anybody and names what it likes, anywhere; nobody's other files (keys, say) go to a farm.
     """
-    led = os.path.realpath(path)
-    return os.path.isfile(led) and all(os.path.splitext(name)[1].lower() in ends for name in (path, led))
+    try:
+        led = led_to(path)
+    except OSError:
+        return False
+    return led.is_file() and all(os.path.splitext(name)[1].lower() in ends for name in (path, led))

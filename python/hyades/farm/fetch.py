@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import os
+import stat
 from collections.abc import Callable
 from pathlib import Path
 from urllib.parse import quote
@@ -93,6 +94,8 @@ class Fetcher:
     def _bring(self, file: OutputFile, part: Path, anew: bool) -> bool:
         """Fills the part; whether its bytes are right."""
         flags = os.O_RDWR | os.O_CREAT | _NO_LINKS | (os.O_TRUNC if anew else 0)
+        if os.path.lexists(part) and not stat.S_ISREG(part.lstat().st_mode):
+            raise FileRefused(f"{part}: no file, expected what an earlier fetch has left, or nothing")
         with os.fdopen(os.open(part, flags, 0o666), "r+b") as out:
             digest = hashlib.sha256()
             while piece := out.read(_PIECE):
