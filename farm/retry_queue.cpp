@@ -1,5 +1,6 @@
 #include "farm/retry_queue.h"
 
+#include <limits>
 #include <utility>
 
 namespace hyades::farm {
@@ -10,12 +11,13 @@ RetryQueue::RetryQueue(size_t threads, std::chrono::nanoseconds pause) : pause_(
 
 RetryQueue::~RetryQueue() { end(); }
 
-void RetryQueue::add(uint64_t key, Task task) {
+void RetryQueue::add(uint64_t key, Task task, const std::string& owner) {
   const core::MutexLock lock(mutex_);
   if (ended_) return;
   const auto [queue, fresh] = tasks_.try_emplace(key);
-  queue->second.push_back(std::move(task));
+  queue->second.left.push_back(std::move(task));
   if (!fresh) return;
+  queue->second.owner = owner;
   ready_.push_back(key);
   wake_.notify_one();
 }
@@ -39,11 +41,30 @@ void RetryQueue::wake_due(Time now) {
   }
 }
 
+std::optional<uint64_t> RetryQueue::take_next(Time now) {
+  auto best = ready_.end();
+  double least = std::numeric_limits<double>::infinity();
+  for (auto key = ready_.begin(); key != ready_.end() && least > 0; ++key) {
+    const std::string& owner = tasks_.at(*key).owner;
+    if (owners_in_work_.contains(owner)) continue;
+    const double used = shares_.used(owner, now);
+    if (used >= least) continue;
+    least = used;
+    best = key;
+  }
+  if (best == ready_.end()) return std::nullopt;
+  const uint64_t next = *best;
+  ready_.erase(best);
+  return next;
+}
+
 void RetryQueue::work() {
   core::MutexLock lock(mutex_);
   for (;;) {
-    wake_due(std::chrono::steady_clock::now());
-    if (ready_.empty()) {
+    const Time begun = std::chrono::steady_clock::now();
+    wake_due(begun);
+    const auto key = take_next(begun);
+    if (!key) {
       // One that is in work may leave others.
       if (end_ && in_work_ == 0) return;
       if (put_off_.empty()) {
@@ -53,29 +74,35 @@ void RetryQueue::work() {
       }
       continue;
     }
-    const uint64_t key = ready_.front();
-    ready_.pop_front();
-    const auto queue = tasks_.find(key);
-    Task task = std::move(queue->second.front());
+    const auto queue = tasks_.find(*key);
+    std::deque<Task>& left = queue->second.left;
+    const std::string owner = queue->second.owner;
+    Task task = std::move(left.front());
     ++in_work_;
+    if (!owner.empty()) owners_in_work_.insert(owner);
     lock.unlock();
     const bool done = task();
     if (done) task = nullptr;
     lock.lock();
     --in_work_;
-    if (done) {
-      queue->second.pop_front();
-    } else if (end_) {
-      queue->second.clear();
-    } else {
-      queue->second.front() = std::move(task);
+    const Time now = std::chrono::steady_clock::now();
+    if (!owner.empty()) {
+      owners_in_work_.erase(owner);
+      shares_.use(owner, std::chrono::duration<double>(now - begun).count(), now);
     }
-    if (queue->second.empty()) {
+    if (done) {
+      left.pop_front();
+    } else if (end_) {
+      left.clear();
+    } else {
+      left.front() = std::move(task);
+    }
+    if (left.empty()) {
       tasks_.erase(queue);
     } else if (done) {
-      ready_.push_back(key);
+      ready_.push_back(*key);
     } else {
-      put_off_.emplace(std::chrono::steady_clock::now() + pause_, key);
+      put_off_.emplace(now + pause_, *key);
     }
     wake_.notify_all();
   }

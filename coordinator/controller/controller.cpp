@@ -86,7 +86,7 @@ struct Controller::Parts {
   Sweeper sweeper{context, unclaimed};
   JobIntake intake{context, dispatcher, jobs,      queries, records,  recovery,
                    disk,    sweeper,    timelines, quotas,  unclaimed};
-  JobSteering steering{context, dispatcher, jobs, queries, records, videos};
+  JobSteering steering{context, dispatcher, jobs, queries, records, finisher, videos};
   Diagnosis diagnosis{context, dispatcher, jobs, workers, sessions, disk, videos};
   ActionExecutor executor{context, jobs,      workers, sessions, films,
                           frames,  divergent, records, videos};
@@ -161,6 +161,7 @@ void Controller::stop() {
   parts_->context.stop = true;
   parts_->records.answer_late({});
   parts_->jobs.wake();
+  parts_->finisher.stop();
   parts_->videos.stop();
   parts_->sessions.close({grpc::StatusCode::UNAVAILABLE, "the coordinator stops"});
 }

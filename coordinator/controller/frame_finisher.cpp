@@ -53,9 +53,44 @@ void FrameFinisher::add(ActiveJob& active, const FinishFrame& asked,
                         std::vector<std::string> parts) {
   Completed completed{active.id, asked.frame, asked.volume, active.complete[asked.frame],
                       std::move(parts)};
-  queue_.add(active.stored.id,
-             [this, completed = std::move(completed)]() mutable { return finish(completed); });
+  queue_.add(
+      active.stored.id,
+      [this, completed = std::move(completed)]() mutable { return finish(completed); },
+      active.stored.owner);
 }
+
+void FrameFinisher::cancel(JobId job) {
+  if (const auto one = in_work_.find(job); one != in_work_.end()) one->second = true;
+}
+
+void FrameFinisher::stop() {
+  const StateLock lock(context_.mutex);
+  for (auto& [job, stop] : in_work_) stop = true;
+}
+
+/// What of a job is in work, as long as this is there.
+class FrameFinisher::InWork {
+ public:
+  InWork(FrameFinisher& finisher, JobId job) : finisher_(finisher), job_(job) {
+    const StateLock lock(finisher_.context_.mutex);
+    stop_ = &finisher_.in_work_[job_];
+    // Nobody stops what begins later.
+    *stop_ = finisher_.context_.stop.load();
+  }
+  ~InWork() {
+    const StateLock lock(finisher_.context_.mutex);
+    finisher_.in_work_.erase(job_);
+  }
+  InWork(const InWork&) = delete;
+  InWork& operator=(const InWork&) = delete;
+
+  const std::atomic<bool>& stop() const { return *stop_; }
+
+ private:
+  FrameFinisher& finisher_;
+  const JobId job_;
+  std::atomic<bool>* stop_ = nullptr;
+};
 
 /// Whether the scheduler has heard what became of it. What fails is told with the next try, so that
 /// frames which fail at once keep nobody busy.
@@ -66,22 +101,23 @@ bool FrameFinisher::finish(Completed& completed) {
     turn.tell(FinishFailed{completed.job, completed.frame, *completed.failure});
     return true;
   }
-  std::string spec;
+  const InWork in_work(*this, completed.job);
+  std::string spec, owner;
   StoredFrame over;
-  if (!begin(completed, spec, over)) return !completed.failure;
-  auto document = context_.documents.read_stored(spec, kReadingPatience);
+  if (!begin(completed, spec, owner, over)) return !completed.failure;
+  auto document = context_.documents.read_stored(spec, kReadingPatience, owner);
   if (!document) return false;  // it is tried again
   const int64_t begun_us = core::wall_us();
   auto task = *document ? task_of(***document, static_cast<uint64_t>(completed.job), over)
                         : core::Result<FinishTask>(document->error());
   document.reset();  // making the outputs takes its time
   bool written = false;
-  const core::Status done =
-      task ? make_outputs(completed, *task, over, written) : core::Status(task.error());
+  const core::Status done = task ? make_outputs(completed, *task, over, in_work.stop(), written)
+                                 : core::Status(task.error());
   // What is written and cannot be stored is no fault of the frame's, nor is a full disk.
   const bool waits = !done && (written || disk_.is_short_for(*completed.film));
   Turn turn(dispatcher_);
-  if (context_.stop) return true;
+  if (in_work.stop() && !written) return true;
   if (waits) {
     ActiveJob* still = jobs_.find(completed.job);
     if (still == nullptr) return true;
@@ -107,16 +143,18 @@ bool FrameFinisher::finish(Completed& completed) {
 
 /// What the frame is of, and what it will be when it is `over`; false where the job is gone, or the
 /// frame has failed.
-bool FrameFinisher::begin(Completed& completed, std::string& spec, StoredFrame& over) {
+bool FrameFinisher::begin(Completed& completed, std::string& spec, std::string& owner,
+                          StoredFrame& over) {
   const StateLock lock(context_.mutex);
   ActiveJob* active = jobs_.find(completed.job);
-  if (active == nullptr) return false;
+  if (active == nullptr || active->ending) return false;
   // Where a film could not be merged some of it is missing.
   if (!completed.film || completed.film->coverage().volume() != completed.volume) {
     completed.failure = "its film is not whole: 'retry' renders it again";
     return false;
   }
   spec = active->stored.spec;
+  owner = active->stored.owner;
   const FrameNote& note = active->frames[completed.frame];
   over = {completed.frame,    true, {}, note.worker_class, note.restarts, completed.parts,
           jobs_.next_moment()};
@@ -141,13 +179,13 @@ core::Result<FinishTask> FrameFinisher::task_of(const farm::ReadJob& read, uint6
 
 /// Has the outputs made and stores that the frame is over; `written`: the first of it is done.
 core::Status FrameFinisher::make_outputs(const Completed& completed, const FinishTask& task,
-                                         const StoredFrame& over, bool& written) const {
+                                         const StoredFrame& over, const std::atomic<bool>& stop,
+                                         bool& written) const {
   const auto id = static_cast<uint64_t>(completed.job);
   const core::FpMode mode;
   const std::string scratch =
       fmt::format("{}/tmp/{}-{}", context_.options.folder, id, completed.frame);
-  const auto files =
-      run_finisher(context_.options.finisher, scratch, task, *completed.film, context_.stop);
+  const auto files = run_finisher(context_.options.finisher, scratch, task, *completed.film, stop);
   if (!files) return files.error();
   written = true;
   core::failpoint("outputs-written");

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <atomic>
 #include <cstdint>
+#include <map>
 #include <memory>
 #include <string>
 #include <vector>
@@ -15,7 +17,8 @@ namespace hyades::coordinator {
 class DiskWatch;
 struct FinishTask;
 
-/// Has the outputs of complete frames made, one frame after the other.
+/// Has the outputs of complete frames made: of each owner one frame after the other, and owners
+/// take turns by the time that theirs take.
 class FrameFinisher {
  public:
   FrameFinisher(ControllerContext& context, Dispatcher& dispatcher, JobTable& jobs, DiskWatch& disk,
@@ -25,30 +28,39 @@ class FrameFinisher {
         jobs_(jobs),
         disk_(disk),
         timelines_(timelines) {}
-  /// Waits for the one in work.
+  /// Breaks off those in work.
+  void stop() HYADES_EXCLUDES(state_lock);
+  /// Waits for those in work; to be called after stop().
   void end() { queue_.end(); }
 
   /// Has the frame finished, whose film is among those of `active` that are complete. `parts`:
   /// StoredFrame::parts.
   void add(ActiveJob& active, const FinishFrame& asked, std::vector<std::string> parts)
       HYADES_REQUIRES(state_lock);
+  /// Breaks off the frame of the job in work: nobody wants its outputs.
+  void cancel(JobId job) HYADES_REQUIRES(state_lock);
 
  private:
+  class InWork;
   struct Completed;
   bool finish(Completed& completed) HYADES_EXCLUDES(state_lock);
-  bool begin(Completed& completed, std::string& spec, StoredFrame& over)
+  bool begin(Completed& completed, std::string& spec, std::string& owner, StoredFrame& over)
       HYADES_EXCLUDES(state_lock);
   core::Result<FinishTask> task_of(const farm::ReadJob& read, uint64_t job,
                                    const StoredFrame& over) const;
   core::Status make_outputs(const Completed& completed, const FinishTask& task,
-                            const StoredFrame& over, bool& written) const;
+                            const StoredFrame& over, const std::atomic<bool>& stop,
+                            bool& written) const;
 
   ControllerContext& context_;
   Dispatcher& dispatcher_;
   JobTable& jobs_;
   DiskWatch& disk_;
   Timelines& timelines_;
-  farm::RetryQueue queue_{1};  ///< by job
+  /// Of the jobs in work, what ends their finisher.
+  std::map<JobId, std::atomic<bool>> in_work_ HYADES_GUARDED_BY(state_lock);
+  /// By job. So many owners' frames are finished at once: each takes the memory of its film anew.
+  farm::RetryQueue queue_{4};
 };
 
 }  // namespace hyades::coordinator

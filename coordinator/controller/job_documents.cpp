@@ -58,7 +58,7 @@ grpc::Status others_are_read() {
 
 void JobDocument::EndTurn::operator()(JobDocuments* documents) const {
   if (std::chrono::steady_clock::now() - begun > kLong) ::malloc_trim(0);
-  documents->end_turn();
+  documents->end_turn(begun);
 }
 
 JobDocuments::Found JobDocuments::read(const v1::JobSpec& spec, std::chrono::milliseconds patience,
@@ -122,22 +122,38 @@ bool JobDocuments::begin_turn(Time give_up, const std::string& owner) {
   }
   const uint64_t number = next_waiting_++;
   waiting_.push_back({number, owner});
-  while (reading_ || waiting_.front().number != number) {
-    if (std::chrono::steady_clock::now() >= give_up) {
-      std::erase_if(waiting_, [&](const Waiting& other) { return other.number == number; });
+  const auto leave = [&] {
+    std::erase_if(waiting_, [&](const Waiting& other) { return other.number == number; });
+  };
+  for (;;) {
+    const Time now = std::chrono::steady_clock::now();
+    if (!reading_ && next_reader(now) == number) break;
+    if (now >= give_up) {
+      leave();
       turn_ended_.notify_all();
       return false;
     }
     turn_ended_.wait_until(mutex_, give_up);
   }
-  waiting_.pop_front();
+  leave();
   reading_ = true;
   reads_for_ = owner;
   return true;
 }
 
-void JobDocuments::end_turn() {
+/// Of those who wait, the first for whose owner least was read lately.
+uint64_t JobDocuments::next_reader(Time now) const {
+  const auto next =
+      std::min_element(waiting_.begin(), waiting_.end(), [&](const Waiting& a, const Waiting& b) {
+        return shares_.used(a.owner, now) < shares_.used(b.owner, now);
+      });
+  return next->number;
+}
+
+void JobDocuments::end_turn(Time begun) {
   const core::MutexLock lock(mutex_);
+  const Time now = std::chrono::steady_clock::now();
+  shares_.use(reads_for_, std::chrono::duration<double>(now - begun).count(), now);
   reading_ = false;
   turn_ended_.notify_all();
 }

@@ -18,6 +18,7 @@
 #include "core/base/mutex.h"
 #include "core/base/result.h"
 #include "farm/content_store.h"
+#include "farm/fair_shares.h"
 #include "farm/job_package.h"
 #include "hyades/v1/jobs.pb.h"
 
@@ -55,9 +56,9 @@ class JobDocument {
 };
 
 /// What documents of jobs say, read out of their files. Those that were used last stay in memory as
-/// far as they fit, whichever jobs they are of; others are read again, one at a time and in the
-/// order in which they are asked for, as a long one takes seconds and some hundred megabytes. So
-/// open jobs can have any number of long documents. Thread-safe.
+/// far as they fit, whichever jobs they are of; others are read again, one at a time, as a long one
+/// takes seconds and some hundred megabytes: next for whom lately least time was spent on reading.
+/// So open jobs can have any number of long documents. Thread-safe.
 class JobDocuments {
  public:
   /// `most_bytes`: of those that stay in memory.
@@ -65,11 +66,11 @@ class JobDocuments {
       : assets_(assets), most_bytes_(most_bytes) {}
 
   /// Nothing where others were still being read after `patience`, or at once where another of the
-  /// owner's is read or waits already: so nobody has to wait for more than one of each. Errors hold
-  /// every complaint about the document, or say which of its files is gone.
+  /// owner's is read or waits already. Errors hold every complaint about the document, or say which
+  /// of its files is gone.
   using Found = std::optional<core::Result<JobDocument>>;
   /// The job as the spec's document and samples say it. May wait for the disk. `owner`: for whom;
-  /// empty: for the coordinator itself.
+  /// empty: nobody in particular, of whom any number wait.
   Found read(const v1::JobSpec& spec, std::chrono::milliseconds patience,
              const std::string& owner = {}) HYADES_EXCLUDES(state_lock, mutex_);
   /// What read() finds for a spec as it is stored (StoredJob::spec); an error where that is
@@ -95,7 +96,8 @@ class JobDocuments {
   Document find(const Digest& name) HYADES_EXCLUDES(mutex_);
   bool keep(Kept fresh) HYADES_EXCLUDES(mutex_);
   bool begin_turn(Time give_up, const std::string& owner) HYADES_EXCLUDES(mutex_);
-  void end_turn() HYADES_EXCLUDES(mutex_);
+  void end_turn(Time begun) HYADES_EXCLUDES(mutex_);
+  uint64_t next_reader(Time now) const HYADES_REQUIRES(mutex_);
 
   farm::ContentStore& assets_;
   const uint64_t most_bytes_;
@@ -113,6 +115,7 @@ class JobDocuments {
   };
   /// Those who wait to read one, in the order in which they came.
   std::deque<Waiting> waiting_ HYADES_GUARDED_BY(mutex_);
+  farm::FairShares shares_ HYADES_GUARDED_BY(mutex_);  ///< seconds of reading, of owners
   uint64_t next_waiting_ HYADES_GUARDED_BY(mutex_) = 0;
 };
 

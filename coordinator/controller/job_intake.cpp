@@ -239,7 +239,9 @@ grpc::Status JobIntake::wait_until_left(uint64_t id) {
 
 void JobIntake::retry(uint64_t id, const JobReply& then) {
   v1::Job now;
-  if (const grpc::Status read = read_ahead(id); !read.ok()) return then(read, now);
+  // A long document takes seconds, and others submit meanwhile.
+  std::optional<JobRead> read = read_ahead(id);
+  if (read && read->obstacle == Obstacle::others_are_read) return then(others_are_read(), now);
   const auto one = context_.wait_for_submissions();
   if (!one) return then(others_submit(), now);
   bool open = false;
@@ -257,25 +259,26 @@ void JobIntake::retry(uint64_t id, const JobReply& then) {
   }
   if (context_.stop) records_.answer_late({});
   if (open) return;
-  const grpc::Status reopened = reopen(id, now);
+  const grpc::Status reopened = reopen(id, std::move(read), now);
   then(reopened, now);
 }
 
-/// Has the document of a job that has ended in memory, as a long one takes seconds and others
-/// submit meanwhile. What is wrong with it is told later.
-grpc::Status JobIntake::read_ahead(uint64_t id) {
+/// Reads a job that has ended. What is wrong with it is told later.
+std::optional<JobRead> JobIntake::read_ahead(uint64_t id) {
   const auto stored = context_.store->job(id);
-  if (!stored || !*stored || !has_ended((*stored)->state)) return grpc::Status::OK;
-  const auto document =
-      context_.documents.read_stored((*stored)->spec, kReadingPatience, (*stored)->owner);
-  return document ? grpc::Status::OK : others_are_read();
+  if (!stored || !*stored || !has_ended((*stored)->state)) return std::nullopt;
+  return recovery_.read(id);
 }
 
 /// A job that has ended is open again.
-grpc::Status JobIntake::reopen(uint64_t id, v1::Job& now) {
+grpc::Status JobIntake::reopen(uint64_t id, std::optional<JobRead> read, v1::Job& now) {
   if (const grpc::Status left = wait_until_left(id); !left.ok()) return left;
   StoredJob job;
   if (const grpc::Status may = may_reopen(id, job); !may.ok()) return may;
+  if (!read) {
+    return farm::retry_later(grpc::StatusCode::UNAVAILABLE,
+                             fmt::format("job {} has ended just now", id), std::chrono::seconds(1));
+  }
   if (core::Status gone = forget_failed_frames(id); !gone) return farm::unavailable(gone.error());
   const StoredJob before = job;
   job.state = StoredState::running;
@@ -283,7 +286,8 @@ grpc::Status JobIntake::reopen(uint64_t id, v1::Job& now) {
   job.reason.clear();
   if (core::Status noted = context_.store->update_job(job); !noted)
     return farm::unavailable(noted.error());
-  if (core::Status recovered = recovery_.recover(id, "goes on: somebody has retried it");
+  if (core::Status recovered =
+          recovery_.recover(id, std::move(*read), "goes on: somebody has retried it");
       !recovered) {
     job = before;  // done, if only some of its pictures are suspect
     job.reason = "could not be taken up again: " + recovered.error().message;

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -20,6 +21,7 @@ namespace hyades::coordinator {
 class DiskWatch;
 class JobQueries;
 class JobRecovery;
+struct JobRead;
 class Sweeper;
 
 /// Jobs that come, come again and go. All may wait for the disk, and for other submissions up to
@@ -55,8 +57,9 @@ class JobIntake {
   grpc::Status take_in(std::unique_ptr<ActiveJob> active, v1::SubmitResponse& response,
                        const std::vector<core::AssetRecord>& files)
       HYADES_EXCLUDES(state_lock) HYADES_NO_THREAD_SAFETY_ANALYSIS;
-  grpc::Status read_ahead(uint64_t id) HYADES_EXCLUDES(state_lock);
-  grpc::Status reopen(uint64_t job, v1::Job& now) HYADES_EXCLUDES(state_lock);
+  std::optional<JobRead> read_ahead(uint64_t id) HYADES_EXCLUDES(state_lock);
+  grpc::Status reopen(uint64_t job, std::optional<JobRead> read, v1::Job& now)
+      HYADES_EXCLUDES(state_lock);
   grpc::Status may_reopen(uint64_t id, StoredJob& job) HYADES_EXCLUDES(state_lock);
   core::Status forget_failed_frames(uint64_t job);
   core::Status forget(uint64_t job);

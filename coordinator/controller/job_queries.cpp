@@ -377,19 +377,18 @@ grpc::Status JobQueries::picture(uint64_t id, const StoredOutput& output, core::
   }
 }
 
-grpc::Status JobQueries::film(uint64_t id, int32_t frame, FilmTaker then) {
+grpc::Status JobQueries::film(uint64_t id, int32_t frame, const std::string& asker,
+                              FilmTaker then) {
   std::string spec;
-  std::string owner;
   {
     const StateLock lock(context_.mutex);
     const ActiveJob* active = jobs_.find(id);
     if (active != nullptr && grows(*active, frame)) {
       spec = active->stored.spec;
-      owner = active->stored.owner;
     }
   }
   if (spec.empty()) return copy_film(id, frame, std::nullopt, std::move(then));
-  auto document = context_.documents.read_stored(spec, kReadingPatience, owner);
+  auto document = context_.documents.read_stored(spec, kReadingPatience, asker);
   if (!document) return others_are_read();
   if (!*document) return {grpc::StatusCode::DATA_LOSS, document->error().message};
   core::FilmInfo info = film_info(***document, frame);

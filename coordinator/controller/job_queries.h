@@ -84,7 +84,9 @@ class JobQueries {
   /// A copy of the frame's film as it is now, or, where films are kept, was in the end; given to
   /// `then` (which is quick), perhaps by another thread. May wait for the disk. RESOURCE_EXHAUSTED
   /// where there is no room for one (FilmCopies), FAILED_PRECONDITION where there never is.
-  grpc::Status film(uint64_t job, int32_t frame, FilmTaker then) HYADES_EXCLUDES(state_lock);
+  /// `asker`: for whom the job's document is read where it has to be.
+  grpc::Status film(uint64_t job, int32_t frame, const std::string& asker, FilmTaker then)
+      HYADES_EXCLUDES(state_lock);
   /// Reads a finished picture of the job. `room`: among copies of films, and has to be kept as long
   /// as the picture. DATA_LOSS where the file is damaged; else as of film().
   grpc::Status picture(uint64_t job, const StoredOutput& output, core::Image& image,

@@ -94,23 +94,9 @@ bool is_stored(const v1::JobFile& file, farm::ContentStore& assets) {
   return digest && assets.contains(core::to_hex(*digest), file.size());
 }
 
-/// The job as it is stored, with nothing of its frames.
-core::Result<std::unique_ptr<ActiveJob>> JobRecovery::read(const StoredJob& stored,
-                                                           const v1::JobSpec& spec) {
-  const auto document = context_.documents.read(spec, kRecoveryPatience);
-  if (!document) return core::Error{"the documents of other jobs are being read"};
-  if (!*document) return document->error();
-  return make_active_job(stored, spec, ***document, *context_.assets, context_.options.film_memory);
-}
-
-/// Whether a job can never be recovered as it is: its record is damaged, its files are gone, or
-/// what they say is not allowed here. All else (a full disk, one that does not answer) may pass.
-bool JobRecovery::lasting_obstacle(uint64_t id) {
-  const auto stored = context_.store->job(id);
-  if (!stored) return false;
-  if (!*stored) return true;
-  v1::JobSpec spec;
-  if (!spec.ParseFromString((*stored)->spec)) return true;
+/// Whether a file of the job is gone, also one that was found damaged; nothing where that cannot be
+/// told now.
+std::optional<bool> JobRecovery::lacks_files(const v1::JobSpec& spec) {
   farm::ContentStore& assets = *context_.assets;
   for (const v1::JobFile& file : spec.files()) {
     const auto digest = farm::digest_from_wire(file.sha256());
@@ -118,12 +104,38 @@ bool JobRecovery::lasting_obstacle(uint64_t id) {
     const std::string name = core::to_hex(*digest);
     if (assets.missing(name)) return true;
     // One that is damaged is gone once it was read.
-    if (!assets.read(name)) return assets.missing(name);
+    if (assets.read(name)) continue;
+    if (assets.missing(name)) return true;
+    return std::nullopt;
   }
-  const auto document = context_.documents.read(spec, kRecoveryPatience);
-  if (!document) return false;
-  return !*document ||
-         !make_active_job(**stored, spec, ***document, assets, context_.options.film_memory);
+  return false;
+}
+
+JobRead JobRecovery::read(uint64_t id) {
+  const auto stored = context_.store->job(id);
+  if (!stored) return {stored.error(), Obstacle::passing};
+  if (!*stored) return {core::Error{"it is not there"}, Obstacle::lasting};
+  v1::JobSpec spec;
+  if (!spec.ParseFromString((*stored)->spec)) {
+    return {core::Error{"its record is damaged"}, Obstacle::lasting};
+  }
+  for (const v1::JobFile& file : spec.files()) {
+    if (is_stored(file, *context_.assets)) continue;
+    const core::Error gone{
+        file.path() +
+        " is gone or damaged on the coordinator's disk: submit the job (or the file with another) "
+        "again, then 'retry' takes this one up"};
+    return {gone, lacks_files(spec).value_or(false) ? Obstacle::lasting : Obstacle::passing};
+  }
+  const auto document = context_.documents.read(spec, kRecoveryPatience, (*stored)->owner);
+  if (!document) {
+    return {core::Error{"the documents of other jobs are being read"}, Obstacle::others_are_read};
+  }
+  auto active = *document ? make_active_job(**stored, spec, ***document, *context_.assets,
+                                            context_.options.film_memory)
+                          : core::Result<std::unique_ptr<ActiveJob>>(document->error());
+  if (active) return {std::move(active), Obstacle::none};
+  return {std::move(active), lacks_files(spec) ? Obstacle::lasting : Obstacle::passing};
 }
 
 core::Status JobRecovery::recover_all() {
@@ -136,9 +148,13 @@ core::Status JobRecovery::recover_all() {
       wait(id, core::Error{"the coordinator has just been started, and others are read first"});
       continue;
     }
-    const core::Status recovered = recover(id, kRestarted);
+    JobRead one = read(id);
+    const Obstacle obstacle = one.obstacle;
+    const core::Status recovered = recover(id, std::move(one), kRestarted);
     if (recovered) continue;
-    if (!lasting_obstacle(id) || !give_up(id, recovered.error())) wait(id, recovered.error());
+    if (obstacle != Obstacle::lasting || !give_up(id, recovered.error())) {
+      wait(id, recovered.error());
+    }
   }
   return {};
 }
@@ -165,15 +181,17 @@ bool JobRecovery::recover_later(uint64_t id) {
 
 bool JobRecovery::try_to_recover(uint64_t id) {
   if (context_.stop) return true;
+  JobRead again = read(id);  // others submit meanwhile
+  const Obstacle obstacle = again.obstacle;
   // Not while somebody deletes it, or unused files are swept.
   const auto one = context_.wait_for_submissions();
   if (!one) return false;
   const auto stored = context_.store->job(id);
   if (!stored) return false;
   if (!*stored || has_ended((*stored)->state)) return true;  // somebody has deleted it
-  const core::Status recovered = recover(id, kRestarted);
+  const core::Status recovered = recover(id, std::move(again), kRestarted);
   if (recovered) return true;
-  return lasting_obstacle(id) && give_up(id, recovered.error()).ok();
+  return obstacle == Obstacle::lasting && give_up(id, recovered.error()).ok();
 }
 
 /// The job fails alone, with the reason kept; `retry` reopens it.
@@ -187,26 +205,19 @@ core::Status JobRecovery::give_up(uint64_t id, const core::Error& why) {
   return context_.store->update_job(**stored);
 }
 
-core::Status JobRecovery::recover(uint64_t id, const std::string& told) {
+core::Status JobRecovery::recover(uint64_t id, JobRead read, const std::string& told) {
+  if (!read.job) return read.job.error();
   auto stored = context_.store->job(id);
   if (!stored) return stored.error();
   if (!*stored) return core::Error{"it is not there"};
-  v1::JobSpec spec;
-  if (!spec.ParseFromString((*stored)->spec)) return core::Error{"its record is damaged"};
-  for (const v1::JobFile& file : spec.files()) {
-    if (is_stored(file, *context_.assets)) continue;
-    return core::Error{file.path() +
-                       " is gone or damaged on the coordinator's disk: submit the job (or the "
-                       "file with another) again, then 'retry' takes this one up"};
-  }
-  auto active = read(**stored, spec);
-  if (!active) return active.error();
-  (*active)->id = JobId{id};
-  (*active)->core_ns_stored = (*active)->stored.core_ns;
-  jobs_.note(**active, v1::LOG_LEVEL_INFO, std::nullopt, {}, told);
-  auto restored = restore_frames(**active);
+  ActiveJob& active = **read.job;
+  active.stored = std::move(**stored);
+  active.id = JobId{id};
+  active.core_ns_stored = active.stored.core_ns;
+  jobs_.note(active, v1::LOG_LEVEL_INFO, std::nullopt, {}, told);
+  auto restored = restore_frames(active);
   if (!restored) return restored.error();
-  return start(std::move(*active), std::move(*restored));
+  return start(std::move(*read.job), std::move(*restored));
 }
 
 /// The frames of the job that are over, but for those that are rendered again.

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <set>
 #include <string>
 #include <vector>
@@ -17,6 +18,21 @@ class JobFilms;
 /// Whether the job's file is among the assets, whole.
 bool is_stored(const v1::JobFile& file, farm::ContentStore& assets);
 
+/// What stands in the way of a job that is read again.
+enum class Obstacle {
+  none,
+  others_are_read,  ///< the documents of others, and it may come again
+  passing,          ///< perhaps: a full disk, or one that does not answer
+  lasting,          ///< its record is damaged, its files are gone, or what they say is not allowed
+};
+
+/// A stored job that was read again and that nobody else knows yet; an error where there is an
+/// obstacle.
+struct JobRead {
+  core::Result<std::unique_ptr<ActiveJob>> job;
+  Obstacle obstacle = Obstacle::none;
+};
+
 /// Brings jobs into memory: new ones, those that were open when the coordinator ended, and those
 /// that are reopened.
 class JobRecovery {
@@ -28,8 +44,10 @@ class JobRecovery {
   /// be recovered now or within ControllerOptions::recovery_time, or cannot be stored as failed,
   /// waits and is tried again. An error where the store does not tell which jobs there are.
   core::Status recover_all() HYADES_EXCLUDES(state_lock);
-  /// Recovers the job as it is stored; its log says `told`.
-  core::Status recover(uint64_t id, const std::string& told)
+  /// Reads the job, as it is stored, with its document, which may take seconds.
+  JobRead read(uint64_t id) HYADES_EXCLUDES(state_lock);
+  /// Recovers the job, which was read before, as it is stored by now; its log says `told`.
+  core::Status recover(uint64_t id, JobRead read, const std::string& told)
       HYADES_EXCLUDES(state_lock) HYADES_NO_THREAD_SAFETY_ANALYSIS;
   /// Reads the films that are there, and hands the job to the scheduler.
   core::Status start(std::unique_ptr<ActiveJob> owned, RestoredJob restored)
@@ -40,9 +58,7 @@ class JobRecovery {
   bool try_to_recover(uint64_t id) HYADES_EXCLUDES(state_lock);
   void wait(uint64_t id, const core::Error& why) HYADES_EXCLUDES(state_lock);
   core::Status give_up(uint64_t id, const core::Error& why);
-  core::Result<std::unique_ptr<ActiveJob>> read(const StoredJob& stored, const v1::JobSpec& spec)
-      HYADES_EXCLUDES(state_lock);
-  bool lasting_obstacle(uint64_t id) HYADES_EXCLUDES(state_lock);
+  std::optional<bool> lacks_files(const v1::JobSpec& spec) HYADES_EXCLUDES(state_lock);
   // Of a job that nobody else knows yet.
   core::Result<RestoredJob> restore_frames(ActiveJob& active) HYADES_NO_THREAD_SAFETY_ANALYSIS;
   core::Result<std::vector<StoredOutput>> lost_outputs(uint64_t id) const;

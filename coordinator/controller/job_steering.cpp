@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "coordinator/controller/frame_finisher.h"
 #include "coordinator/controller/job_queries.h"
 #include "coordinator/controller/not_found.h"
 #include "coordinator/controller/video_maker.h"
@@ -92,6 +93,7 @@ void JobSteering::cancel(uint64_t id, const std::string& by, JobReply then) {
       // The end is stored by the job's tasks; to answer is to promise.
       records_.when_stored(id, then);
       if (!active->ending) note(*active, "cancelled", by);
+      finisher_.cancel(active->id);
       if (active->making_videos) {
         videos_.cancel(*active);
       } else {

@@ -11,6 +11,7 @@
 
 namespace hyades::coordinator {
 
+class FrameFinisher;
 class JobQueries;
 class VideoMaker;
 
@@ -29,12 +30,14 @@ grpc::Status why_not_open(JobStore& store, uint64_t job);
 class JobSteering {
  public:
   JobSteering(ControllerContext& context, Dispatcher& dispatcher, JobTable& jobs,
-              const JobQueries& queries, JobRecords& records, VideoMaker& videos)
+              const JobQueries& queries, JobRecords& records, FrameFinisher& finisher,
+              VideoMaker& videos)
       : context_(context),
         dispatcher_(dispatcher),
         jobs_(jobs),
         queries_(queries),
         records_(records),
+        finisher_(finisher),
         videos_(videos) {}
 
   /// The job's units are leased no more until it is resumed.
@@ -64,6 +67,7 @@ class JobSteering {
   JobTable& jobs_;
   const JobQueries& queries_;
   JobRecords& records_;
+  FrameFinisher& finisher_;
   VideoMaker& videos_;
 };
 

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cstddef>
 #include <filesystem>
+#include <limits>
 #include <string>
 #include <system_error>
 #include <utility>
@@ -76,51 +77,31 @@ void VideoMaker::stop() {
   stop_ = true;
 }
 
-/// The turn in which the owner was last served; 0: in none that is remembered.
-uint64_t VideoMaker::last_turn(const std::string& owner) const {
-  const auto last = served_.find(owner);
-  return last == served_.end() ? 0 : last->second;
-}
-
-/// The same to be set; of many owners the one that was longest ago is forgotten.
-uint64_t& VideoMaker::served(const std::string& owner) {
-  constexpr size_t kMostRemembered = 1000;
-  if (served_.size() >= kMostRemembered && !served_.contains(owner)) {
-    served_.erase(
-        std::min_element(served_.begin(), served_.end(),
-                         [](const auto& a, const auto& b) { return a.second < b.second; }));
-  }
-  return served_[owner];
-}
-
 std::string VideoMaker::owner_of(JobId job) const {
   const ActiveJob* active = jobs_.find(job);
   return active == nullptr ? std::string() : active->stored.owner;
 }
 
-/// The next one: of the owner who has waited longest; of one owner's those of jobs come first, and
-/// then those that were asked for earlier.
+/// The next one: of the owner whose videos have lately taken least time; of one owner's those of
+/// jobs come first, and then those that were asked for earlier.
 VideoMaker::Next VideoMaker::next() {
+  const auto now = std::chrono::steady_clock::now();
   Next best;
-  std::string whose;
-  uint64_t since = UINT64_MAX;
+  double least = std::numeric_limits<double>::infinity();
   for (const JobId job : due_) {
     std::string owner = owner_of(job);
-    const uint64_t when = last_turn(owner);
-    if (when >= since) continue;
-    best.job = job;
-    whose = std::move(owner);
-    since = when;
+    const double used = shares_.used(owner, now);
+    if (used >= least) continue;
+    best = {job, nullptr, std::move(owner)};
+    least = used;
   }
   for (RequestedVideo& video : asked_) {
     if (video.state != RequestedVideo::State::waiting) continue;
-    const uint64_t when = last_turn(video.owner);
-    if (when >= since) continue;
-    best = {std::nullopt, &video};
-    whose = video.owner;
-    since = when;
+    const double used = shares_.used(video.owner, now);
+    if (used >= least) continue;
+    best = {std::nullopt, &video, video.owner};
+    least = used;
   }
-  if (since != UINT64_MAX) served(whose) = ++turns_;
   return best;
 }
 
@@ -128,11 +109,13 @@ VideoMaker::Next VideoMaker::next() {
 bool VideoMaker::make_next() {
   JobId job{};
   RequestedVideo asked;
+  std::string owner;
   {
     const StateLock lock(context_.mutex);
     if (context_.stop) return true;
     in_work_.reset();
     const Next what = next();
+    owner = what.owner;
     stop_ = false;
     if (what.job) {
       job = *what.job;
@@ -144,9 +127,17 @@ bool VideoMaker::make_next() {
       return true;
     }
   }
-  if (asked.number == 0) return make_of_job(job);
-  make_asked(asked);
-  return true;
+  const auto begun = std::chrono::steady_clock::now();
+  bool over = true;
+  if (asked.number == 0) {
+    over = make_of_job(job);
+  } else {
+    make_asked(asked);
+  }
+  const auto now = std::chrono::steady_clock::now();
+  const StateLock lock(context_.mutex);
+  shares_.use(owner, std::chrono::duration<double>(now - begun).count(), now);
+  return over;
 }
 
 bool VideoMaker::make_of_job(JobId job) {

@@ -3,7 +3,6 @@
 #include <atomic>
 #include <cstdint>
 #include <deque>
-#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -15,6 +14,7 @@
 #include "coordinator/controller/requested_video.h"
 #include "coordinator/controller/timeline.h"
 #include "coordinator/finisher/video_task.h"
+#include "farm/fair_shares.h"
 
 namespace hyades::coordinator {
 
@@ -22,8 +22,8 @@ class DiskWatch;
 class JobRecords;
 
 /// Makes videos of finished frames, one after the other and beside all else, as that takes minutes:
-/// a job's own before it ends, and those that somebody asks for. Owners of jobs take turns, video
-/// by video. Thread-safe.
+/// a job's own before it ends, and those that somebody asks for. Owners of jobs take turns by the
+/// time that theirs take. Thread-safe.
 class VideoMaker {
  public:
   VideoMaker(ControllerContext& context, JobTable& jobs, JobRecords& records, DiskWatch& disk,
@@ -58,11 +58,10 @@ class VideoMaker {
   struct Next {
     std::optional<JobId> job{};
     RequestedVideo* asked = nullptr;
+    std::string owner{};
   };
   Next next() HYADES_REQUIRES(state_lock);
   std::string owner_of(JobId job) const HYADES_REQUIRES(state_lock);
-  uint64_t last_turn(const std::string& owner) const HYADES_REQUIRES(state_lock);
-  uint64_t& served(const std::string& owner) HYADES_REQUIRES(state_lock);
   core::Result<bool> make_one(uint64_t id, const std::vector<core::VideoDesc>& videos,
                               const core::VideoFrames& frames);
   core::Status make(uint64_t id, const std::string& scratch, const VideoTask& task,
@@ -81,10 +80,8 @@ class VideoMaker {
   /// The oldest first; those that are over too.
   std::deque<RequestedVideo> asked_ HYADES_GUARDED_BY(state_lock);
   uint64_t next_asked_ HYADES_GUARDED_BY(state_lock) = 1;
-  /// When a video of the owner's was last begun with, for those lately: owners take turns.
-  std::map<std::string, uint64_t> served_ HYADES_GUARDED_BY(state_lock);
-  uint64_t turns_ HYADES_GUARDED_BY(state_lock) = 0;
-  std::atomic<bool> stop_{false};  ///< ends the video in work
+  farm::FairShares shares_ HYADES_GUARDED_BY(state_lock);  ///< seconds of making, of owners
+  std::atomic<bool> stop_{false};                          ///< ends the video in work
   farm::RetryQueue queue_{1};
 };
 

@@ -74,7 +74,7 @@ class FilmStream final : public Producer<v1::FilmPart> {
   /// The stream may be over before the film is found.
   void ask() {
     const grpc::Status asked = controller_.queries().film(
-        request_.job(), request_.frame(),
+        request_.job(), request_.frame(), owner_,
         [found = found_, waker = waker()](const grpc::Status& said, const core::FilmInfo& info,
                                           std::shared_ptr<const core::Film> film) {
           found->status = said;

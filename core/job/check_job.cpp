@@ -29,7 +29,8 @@ namespace {
 constexpr uint64_t kMostObjects = uint64_t{1} << 22;  ///< once all groups are unfolded
 constexpr size_t kMostCandidates = 10'000;            ///< for 'did you mean'
 constexpr int kMostFrames = 1000;                     ///< at which animated values are tried
-constexpr size_t kMostChecks = 2'000'000;             ///< of animated values
+constexpr size_t kMostChecks = 2'000'000;             ///< of animated values, short ones
+constexpr size_t kShortExpression = 16;               ///< characters; longer ones count as several
 /// Textures made of textures, materials of materials, groups of groups: readers of a job may use
 /// recursion this deep (and about 20 groups written in place, see kMaxYamlDepth).
 constexpr int kLongestChain = 32;
@@ -263,12 +264,33 @@ void check_values(ReadContext& context, const std::vector<Check>& checks,
   }
 }
 
+size_t cost_of(const Expression* expression) {
+  return expression == nullptr ? 0 : expression->text().size() / kShortExpression;
+}
+
+template <class T>
+size_t cost_of(const Animated<T>& value) {
+  size_t cost = 0;
+  for (const auto& expression : value.expressions) cost += cost_of(expression.get());
+  return cost;
+}
+
+/// How many evaluations of short expressions it costs to try all of the checks once.
+size_t cost_of(const ValueChecks& checks) {
+  size_t cost = checks.numbers.size() + checks.vectors.size();
+  for (const NumberCheck& check : checks.numbers) cost += cost_of(check.expression.get());
+  for (const VectorCheck& check : checks.vectors) {
+    cost += cost_of(check.value) + cost_of(check.other);
+  }
+  return cost;
+}
+
 void check_frames(ReadContext& context) {
   const ValueChecks& checks = context.job.checks;
   const std::vector<int32_t> frames = sample_frames(context.job.frames);
   // Bounded in all: very many checks are tried at fewer frames each.
   const size_t moments = context.job.frames.shutter > 0.0F ? kShutterMoments : 1;
-  const size_t each_frame = (checks.numbers.size() + checks.vectors.size()) * moments;
+  const size_t each_frame = cost_of(checks) * moments;
   const size_t stride = 1 + each_frame * frames.size() / kMostChecks;
   check_values(context, checks.numbers, frames, stride);
   check_values(context, checks.vectors, frames, stride);

@@ -51,6 +51,59 @@ TEST(RetryQueue, OfOneOwnerKeepTheirOrderWhileOthersGoOn) {
   for (int i = 0; i < 50; ++i) EXPECT_EQ(done[static_cast<size_t>(i)], i + 1);
 }
 
+TEST(RetryQueue, OwnersTakeTurnsByTheTimeThatTheirsTakes) {
+  std::mutex mutex;
+  std::vector<std::string> done;
+  std::atomic<int> of_eve{0};
+  std::atomic<int> most_of_eve{0};
+  {
+    RetryQueue queue(2);
+    for (uint64_t key = 1; key <= 6; ++key) {
+      queue.add(
+          key,
+          [&] {
+            most_of_eve = std::max(most_of_eve.load(), ++of_eve);
+            std::this_thread::sleep_for(std::chrono::milliseconds(50));
+            --of_eve;
+            const std::lock_guard lock(mutex);
+            done.emplace_back("eve");
+            return true;
+          },
+          "eve");
+    }
+    for (uint64_t key = 7; key <= 9; ++key) {
+      queue.add(
+          key,
+          [&] {
+            const std::lock_guard lock(mutex);
+            done.emplace_back("ann");
+            return true;
+          },
+          "ann");
+    }
+  }
+  ASSERT_EQ(done.size(), 9U);
+  EXPECT_EQ(most_of_eve, 1) << "one of each owner is done at a time";
+  EXPECT_EQ(std::vector<std::string>(done.begin(), done.begin() + 3),
+            std::vector<std::string>(3, "ann"));
+}
+
+TEST(FairShares, WhatWasLongAgoCountsLess) {
+  using std::chrono::minutes;
+  const FairShares::Time now;
+  FairShares shares;
+  shares.use("eve", 8, now);
+  shares.use("ann", 3, now + minutes(20));
+  EXPECT_DOUBLE_EQ(shares.used("eve", now), 8);
+  EXPECT_DOUBLE_EQ(shares.used("eve", now + minutes(20)), 2);
+  EXPECT_DOUBLE_EQ(shares.used("ann", now + minutes(20)), 3);
+  EXPECT_DOUBLE_EQ(shares.used("nobody", now), 0);
+  shares.use("eve", 1, now + minutes(20));
+  EXPECT_DOUBLE_EQ(shares.used("eve", now + minutes(20)), 3);
+  for (int i = 0; i < 2000; ++i) shares.use(std::to_string(i), 0.1, now + minutes(20));
+  EXPECT_DOUBLE_EQ(shares.used("eve", now + minutes(20)), 3) << "who has used much is remembered";
+}
+
 TEST(RetryQueue, AreTriedOnceMoreInTheEnd) {
   int tried = 0;
   int after = 0;

@@ -168,6 +168,33 @@ TEST_F(JobDocumentsTest, OfEachOwnerOneWaits) {
   EXPECT_TRUE(ann_read);
 }
 
+/// So that any number of others who always have one waiting keep nobody from it.
+TEST_F(JobDocumentsTest, ForWhomLeastWasReadIsNext) {
+  const v1::JobSpec large = spec_of(document_of("a", 200));
+  JobDocuments documents(*store, 1);
+  for (const char* often : {"dan", "eve"}) {
+    const auto held = documents.read(large, 20s, often);
+    ASSERT_TRUE(held && *held);
+    std::this_thread::sleep_for(200ms);
+  }
+  std::vector<std::string> order;
+  std::vector<std::thread> readers;
+  {
+    const auto held = documents.read(large, 20s, "bob");
+    ASSERT_TRUE(held && *held);
+    for (const char* owner : {"dan", "eve", "ann"}) {
+      readers.emplace_back([&, owner] {
+        const auto found = documents.read(large, 20s, owner);
+        if (found) order.emplace_back(owner);  // alone, as long as it is held
+      });
+      std::this_thread::sleep_for(100ms);
+    }
+  }
+  for (std::thread& reader : readers) reader.join();
+  ASSERT_EQ(order.size(), 3U);
+  EXPECT_EQ(order.front(), "ann") << "she came last, and has read nothing yet";
+}
+
 TEST_F(JobDocumentsTest, WhatCannotBeReadIsAnErrorAndCanBeReadLater) {
   const std::string text = document_of("a", 1);
   const v1::JobSpec spec = spec_of(text);

@@ -17,6 +17,17 @@
 namespace hyades::coordinator {
 namespace {
 
+/// A document that takes seconds to read.
+std::string long_document() {
+  std::string text = FarmWorld::document(1);
+  std::string balls;
+  for (int i = 0; i < 70'000; ++i) {
+    balls += "  o" + std::to_string(i) + ": {shape: sphere, radius: 1, material: clay}\n";
+  }
+  const std::string one = "objects: {ball: {shape: sphere, radius: 1, material: clay}}\n";
+  return text.replace(text.find(one), one.size(), "objects:\n" + balls);
+}
+
 class NeverFreezes : public testing::Test {
  protected:
   void SetUp() override {
@@ -172,13 +183,7 @@ TEST_F(NeverFreezes, NothingIsPromisedThatACrashWouldUndo) {
 
 /// Nobody else's job waits for it: it takes some seconds, and whoever removes jobs waits for two.
 TEST_F(NeverFreezes, WhileALongDocumentIsRead) {
-  std::string text = FarmWorld::document(1);
-  std::string balls;
-  for (int i = 0; i < 70'000; ++i) {
-    balls += "  o" + std::to_string(i) + ": {shape: sphere, radius: 1, material: clay}\n";
-  }
-  const std::string one = "objects: {ball: {shape: sphere, radius: 1, material: clay}}\n";
-  text.replace(text.find(one), one.size(), "objects:\n" + balls);
+  const std::string text = long_document();
   std::vector<uint64_t> ended;
   for (int i = 0; i < 40; ++i) ended.push_back(ended_job());
   std::atomic<bool> taken{false};
@@ -195,6 +200,52 @@ TEST_F(NeverFreezes, WhileALongDocumentIsRead) {
     std::this_thread::sleep_for(100ms);
   }
   EXPECT_GT(removed, 3U) << "it was read too fast for anybody to wait";
+}
+
+/// Jobs whose documents take seconds to read, and are read whenever they are needed.
+class LongRecovery : public NeverFreezes {
+ protected:
+  void SetUp() override {
+    world.options.document_memory = 1;
+    world.options.recovery_time = std::chrono::seconds(0);
+    NeverFreezes::SetUp();
+    for (int i = 0; i < 40; ++i) ended.push_back(ended_job());
+    ASSERT_TRUE(world.upload(text).ok());
+    v1::SubmitResponse response;
+    const auto context = world.context(120s);
+    ASSERT_TRUE(world.jobs->Submit(context.get(), FarmWorld::request(text), &response).ok());
+    job = response.job().id();
+  }
+  /// Others remove their jobs until `over`.
+  template <class Over>
+  void expect_others_served(const Over& over) {
+    size_t removed = 0;
+    while (!over() && removed < ended.size()) {
+      EXPECT_TRUE(remove(ended[removed++], 1500ms).ok());
+      std::this_thread::sleep_for(100ms);
+    }
+    EXPECT_GT(removed, 3U) << "it was read too fast for anybody to wait";
+  }
+
+  const std::string text = long_document();
+  std::vector<uint64_t> ended;
+  uint64_t job = 0;
+};
+
+TEST_F(LongRecovery, OfARetriedJobHoldsNobodyUp) {
+  ASSERT_TRUE(cancel(job).ok());
+  std::atomic<bool> taken{false};
+  clients.emplace_back([&] {
+    EXPECT_TRUE(retry(job, 120s).ok());
+    taken = true;
+  });
+  expect_others_served([&] { return taken.load(); });
+}
+
+TEST_F(LongRecovery, AfterAStartHoldsNobodyUp) {
+  world.stop();
+  world.start();
+  expect_others_served([&] { return world.get(job).job().reason().empty(); });
 }
 
 TEST_F(NeverFreezes, WhileTheJobStoreDoesNotAnswer) {

@@ -1,0 +1,71 @@
+// Jobs whose outputs take minutes to make.
+#include <gtest/gtest.h>
+
+#include <csignal>
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <vector>
+
+#include "tests/coordinator/services/farm_world.h"
+
+namespace hyades::coordinator {
+namespace {
+
+/// A farm whose finisher does not end with frames of the jobs 1 and 2.
+class SlowFinisher : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    const std::string program = world_.folder.file("finisher");
+    std::ofstream(program) << "#!/bin/sh\n"
+                           << "case \"${2##*/}\" in\n"
+                           << "  1-*|2-*) echo $$ >>" << begun_ << "; exec sleep 300;;\n"
+                           << "esac\n"
+                           << "exec " << world_.options.finisher << " \"$@\"\n";
+    std::filesystem::permissions(program, std::filesystem::perms::owner_all);
+    world_.options.finisher = program;
+    world_.start();
+    for (uint64_t job : {1, 2}) EXPECT_EQ(submit("mallory"), job);
+    worker_.emplace(world_.address, world_.script());
+    ASSERT_TRUE(eventually([&] { return !begun().empty(); }));
+  }
+  void TearDown() override {
+    world_.stop();
+    for (const pid_t finisher : begun()) EXPECT_FALSE(is_alive(finisher));
+  }
+
+  uint64_t submit(const std::string& owner) {
+    return world_.submit(1, [&](v1::SubmitRequest& request) { request.set_owner(owner); });
+  }
+  /// The finishers that were begun with for those jobs.
+  std::vector<pid_t> begun() const {
+    std::vector<pid_t> finishers;
+    std::ifstream file(begun_);
+    for (pid_t one; file >> one;) finishers.push_back(one);
+    return finishers;
+  }
+  static bool is_alive(pid_t process) { return ::kill(process, 0) == 0; }
+
+  FarmWorld world_;
+
+ private:
+  const std::string begun_ = world_.folder.file("begun");
+  std::optional<ScriptedWorker> worker_;
+};
+
+TEST_F(SlowFinisher, IsWaitedForByNobodyElse) {
+  EXPECT_TRUE(world_.wait_for(submit("ada"), v1::JOB_STATE_DONE));
+  EXPECT_EQ(begun().size(), 1U) << "of one owner's frames one is finished at a time";
+}
+
+TEST_F(SlowFinisher, EndsWithItsJob) {
+  const pid_t first = begun().front();
+  v1::JobResponse now;
+  ASSERT_TRUE(world_.jobs->Cancel(world_.context().get(), about(1), &now).ok());
+  EXPECT_TRUE(eventually([&] { return !is_alive(first); }));
+  EXPECT_TRUE(eventually([&] { return begun().size() == 2; })) << "the next one's turn has come";
+  EXPECT_EQ(world_.get(1).job().state(), v1::JOB_STATE_CANCELLED);
+}
+
+}  // namespace
+}  // namespace hyades::coordinator
