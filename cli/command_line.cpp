@@ -116,6 +116,7 @@ void print_error(const core::Error& error, const std::string& path) {
       text.replace(at, path.size(), shown);
     }
   }
+  while (text.ends_with('\n')) text.pop_back();  // complaints are lines
   std::fprintf(stderr, "%s\n", core::printable_lines(text).c_str());
 }
 

@@ -70,7 +70,7 @@ bool is_told(const std::string& name) { return name != "hyades.film" && name != 
 
 void print(const std::string& path, const core::Image& image,
            const std::optional<core::FilmFile>& film) {
-  std::printf("%s: %d x %d pixels", path.c_str(), image.width, image.height);
+  std::printf("%s: %d x %d pixels", core::printable(path).c_str(), image.width, image.height);
   if (image.placement.in_frame()) {
     std::printf(", from %d,%d of %d x %d", image.placement.x, image.placement.y,
                 image.placement.frame_width, image.placement.frame_height);

@@ -1,5 +1,6 @@
 #include "cli/media_swatch.h"
 
+#include <chrono>
 #include <cstddef>
 #include <filesystem>
 #include <span>
@@ -7,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "cli/status_line.h"
+#include "core/base/text.h"
 #include "core/finish/frame_outputs.h"
 #include "core/finish/picture.h"
 #include "core/job/layers.h"
@@ -70,10 +72,15 @@ core::Status render_swatch(const std::vector<KnownMedium>& media, const SwatchOp
   core::RenderFrameOptions how;
   how.threads = options.threads;
   StatusLine line;
+  const auto begun = StatusLine::Clock::now();
   how.progress = [&](double share) {
     if (options.quiet || !line.is_due()) return;
     const std::string bar = line.redraws() ? progress_bar(share) + "  " : "";
-    line.show(fmt::format("{}{:3.0f} %", bar, 100.0 * share));
+    const std::chrono::duration<double> gone = StatusLine::Clock::now() - begun;
+    const std::string left =
+        share > 0.0 ? "  " + core::format_time_left(gone.count() * (1.0 - share) / share) + " left"
+                    : "";
+    line.show(fmt::format("{}{:3.0f} %{}", bar, 100.0 * share, left));
   };
   const auto frame =
       core::render_frame(renderer, core::render_window(job.film), job.sampling.samples, 1, how);

@@ -33,6 +33,7 @@
 #include "core/base/atomic_file.h"
 #include "core/base/folder_links.h"
 #include "core/base/io_reason.h"
+#include "core/base/printable.h"
 #include "core/base/text.h"
 #include "core/job/layers.h"
 #include "core/job/noise_threshold.h"
@@ -63,8 +64,9 @@ void print_bad_samples(const RunTotals& totals, const std::string& path) {
                core::format_count(totals.counters.bad_samples).c_str(),
                core::bad_sample_words().c_str());
   for (const RunTotals::Bad& bad : totals.bad) {
-    std::fprintf(stderr, "  hyades replay %s --frame %d --pixel %d,%d --sample %u\n", path.c_str(),
-                 bad.frame, bad.sample.pixel.x, bad.sample.pixel.y, bad.sample.sample);
+    std::fprintf(stderr, "  hyades replay %s --frame %d --pixel %d,%d --sample %u\n",
+                 core::printable(core::shell_word(path)).c_str(), bad.frame, bad.sample.pixel.x,
+                 bad.sample.pixel.y, bad.sample.sample);
   }
 }
 
@@ -166,7 +168,7 @@ int report(const RenderOptions& options, const FilmRoom& room, const JobFrames& 
 
 /// Says what is wrong.
 int refuse(const core::Error& error, int status = kBadInput) {
-  std::fprintf(stderr, "%s\n", error.message.c_str());
+  std::fprintf(stderr, "%s\n", core::printable_lines(error.message).c_str());
   return status;
 }
 
@@ -276,7 +278,8 @@ std::optional<int> make_videos_of_run(const RenderOptions& options, const core::
   std::fprintf(stderr,
                "all frames are rendered and their pictures are kept: 'hyades video %s --output "
                "%s' (or the same command) goes on\n",
-               options.path.c_str(), options.folder.c_str());
+               core::printable(core::shell_word(options.path)).c_str(),
+               core::printable(core::shell_word(options.folder)).c_str());
   return interrupted() ? kInterrupted : 1;
 }
 

@@ -10,6 +10,7 @@
 #include "cli/frame_range.h"
 #include "cli/interrupt.h"
 #include "cli/load_job.h"
+#include "cli/own_files.h"
 #include "cli/scene_options.h"
 #include "cli/videos.h"
 #include "cli/written_file.h"
@@ -44,12 +45,15 @@ int video_command(int argc, char** argv) {
   std::string range;
   std::string folder = ".";
   bool quiet = false;
+  bool overwrite = false;
   CLI::App app("Makes a job's videos of the pictures that its frames have left.", "hyades video");
   app.add_option("job", path, "the job (.yaml)")->required();
   declare_scene_options(app, scene);
   app.add_option("--frames", range, "only of these frames: 1-10 or 1-10x2 (default: all)")
       ->check(no_frames_error);
   declare_output_folder(app, folder, "folder of the render's outputs");
+  app.add_flag("--overwrite", overwrite,
+               "replace files that are there, whoever made them (default: those of this job)");
   app.add_flag("-q,--quiet", quiet, "say nothing but what is wrong");
   app.footer(
       "examples:\n"
@@ -70,6 +74,17 @@ int video_command(int argc, char** argv) {
   const auto numbers = select_frames(job, range);
   if (!numbers) return kBadInput;
   if (takes_anothers_place(job, folder, *numbers)) return kBadInput;
+  if (!overwrite) {
+    std::vector<std::string> files;
+    const core::VideoFrames frames = core::video_frames(job, folder, *numbers);
+    for (const core::VideoDesc& video : job.videos) {
+      files.push_back(folder + "/" + core::video_file(video, frames));
+    }
+    if (const auto may = check_own_files(files, job.name); !may) {
+      print_error(may.error());
+      return kBadInput;
+    }
+  }
   watch_for_interrupts();
   if (!make_videos(job, folder, *numbers, quiet)) return interrupted() ? kInterrupted : 1;
   if (core::are_all_frames(job, *numbers)) {

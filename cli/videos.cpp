@@ -9,6 +9,7 @@
 #include "cli/command_line.h"
 #include "cli/interrupt.h"
 #include "core/base/folder_links.h"
+#include "core/base/printable.h"
 #include "core/base/text.h"
 #include "core/finish/picture.h"
 #include "core/image/read_image.h"
@@ -138,8 +139,9 @@ void note_no_videos(const core::Job& job, const std::string& folder, const std::
                  "%s/%s is not made: these are not all of the job's frames. Their pictures are in "
                  "%s.frames; 'hyades video %s --output %s' makes it when all are there, with "
                  "--frames a part of it\n",
-                 folder.c_str(), video.file.c_str(), video.file.c_str(), path.c_str(),
-                 folder.c_str());
+                 folder.c_str(), video.file.c_str(), video.file.c_str(),
+                 core::printable(core::shell_word(path)).c_str(),
+                 core::printable(core::shell_word(folder)).c_str());
   }
 }
 

@@ -1,12 +1,15 @@
 #include <pwd.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
+#include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
+#include <system_error>
 #include <utility>
 #include <vector>
 
@@ -22,6 +25,8 @@
 #include "cli/frame_range.h"
 #include "cli/number_range.h"
 #include "cli/scene_options.h"
+#include "core/base/folder_links.h"
+#include "core/base/printable.h"
 #include "core/base/random_id.h"
 #include "core/base/text.h"
 #include "core/base/wall_clock.h"
@@ -172,6 +177,29 @@ Outcome submit(FarmClient& client, const farm::JobPackage& package, core::JobFil
   }
 }
 
+/// Somebody else's job may name any file of who submits it: they see which ones of those go to the
+/// farm that lie elsewhere than the job.
+void tell_files_elsewhere(const farm::JobPackage& package, const std::string& job) {
+  namespace fs = std::filesystem;
+  std::error_code failed;
+  const fs::path folder = fs::canonical(fs::absolute(job, failed).parent_path(), failed);
+  std::vector<std::string> elsewhere;
+  for (const core::AssetRecord& file : package.files) {
+    const fs::path led = fs::canonical(folder / file.reference, failed);
+    if (failed && core::is_not_there(failed)) continue;  // made of others
+    if (!failed && core::is_inside(led, folder)) continue;
+    elsewhere.push_back(failed ? file.reference : led.string());
+  }
+  if (elsewhere.empty()) return;
+  constexpr size_t kMostNamed = 5;
+  const size_t named = std::min(elsewhere.size(), kMostNamed);
+  std::string text = fmt::format("sends {} from outside of the job's folder:",
+                                 core::counted(elsewhere.size(), "file"));
+  for (size_t i = 0; i < named; ++i) text += (i == 0 ? " " : ", ") + elsewhere[i];
+  if (named < elsewhere.size()) text += fmt::format(" and {} more", elsewhere.size() - named);
+  std::fprintf(stderr, "%s\n", core::printable(text).c_str());
+}
+
 /// Whoever submits hears in time that their token ends. An older coordinator does not say so.
 void tell_expiry(const ClientApp& app) {
   const auto client = app.connect_impatiently();
@@ -208,6 +236,7 @@ int submit_command(int argc, char** argv) {
   }
   const auto request = make_request(*package, options);
   if (!request) return app.report({kBadArguments, request.error().message});
+  if (!options.quiet && !blend) tell_files_elsewhere(*package, options.path);
   const auto client = app.connect();
   if (!client) return kBadArguments;
   v1::Job job;

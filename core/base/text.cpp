@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <cstddef>
 #include <iterator>
@@ -106,6 +107,17 @@ std::string format_time_left(double seconds) {
   if (!(seconds < 59.5)) return format_duration(std::floor(seconds + 0.5));
   if (seconds < 0.0) return "?";
   return fmt::format("{:.0f} s", seconds > 0.0 ? std::max(seconds, 1.0) : 0.0);
+}
+
+std::string shell_word(const std::string& text) {
+  const auto is_plain = [](char c) {
+    return std::isalnum(static_cast<unsigned char>(c)) != 0 ||
+           std::string_view("_./:=@%+,-").find(c) != std::string_view::npos;
+  };
+  if (!text.empty() && std::all_of(text.begin(), text.end(), is_plain)) return text;
+  std::string quoted = "'";
+  for (const char c : text) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return quoted + "'";
 }
 
 std::string format_rate(double per_second, std::string_view what) {

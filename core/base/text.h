@@ -27,6 +27,10 @@ std::string lower_case(std::string_view text);
 /// Whether `c` is one of a to z, A to Z and 0 to 9.
 bool is_letter_or_digit(char c);
 
+/// `text` as a word of a shell's command line, in quotes where it needs them: "job.yaml",
+/// "'my job.yaml'".
+std::string shell_word(const std::string& text);
+
 /// "a, b or c".
 std::string join_names(std::span<const std::string> names);
 

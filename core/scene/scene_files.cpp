@@ -25,7 +25,7 @@ namespace {
 class Walk {
  public:
   Walk(const Job& job, std::optional<int32_t> frame) : extras_(mesh_extras_of(job)) {
-    if (frame) add_frame(job, *frame);
+    if (frame) add_frame(job, *frame, looks_at_next_frame(job));
     for (const GroupDesc& group : job.groups) groups_.emplace(group.name, &group);
     for (const MaterialDesc& material : job.materials) materials_.emplace(material.name, &material);
     for (const TextureDesc& texture : job.textures) textures_.emplace(texture.name, &texture);
@@ -37,10 +37,11 @@ class Walk {
   static SceneFiles all(const Job& job) {
     Walk walk;
     walk.extras_ = mesh_extras_of(job);
+    const bool next = looks_at_next_frame(job);
     for (int64_t at = job.frames.first; at <= job.frames.last; at += job.frames.step) {
       // Jobs may have billions of frames, but there are no files for so many.
       if (walk.times_.size() >= kMostFrames) break;
-      walk.add_frame(job, static_cast<int32_t>(at));
+      walk.add_frame(job, static_cast<int32_t>(at), next);
     }
     for (const GroupDesc& group : job.groups) walk.add_meshes(group.objects);
     walk.add_meshes(job.objects);
@@ -57,10 +58,10 @@ class Walk {
 
   Walk() = default;
 
-  /// Sequences are looked at in `frame`, and in the one after it where that matters.
-  void add_frame(const Job& job, int32_t frame) {
+  /// Sequences are looked at in `frame`, and in the one after it where that matters (`next`).
+  void add_frame(const Job& job, int32_t frame, bool next) {
     times_.push_back(job.time_of(frame));
-    if (looks_at_next_frame(job)) times_.push_back(job.time_of(frame + 1));
+    if (next) times_.push_back(job.time_of(frame + 1));
   }
 
   void add_light_maps(const Job& job) {

@@ -112,5 +112,13 @@ TEST(Text, NoiseIsNeverInPowersOfTen) {
   EXPECT_EQ(format_noise(0), "0");
 }
 
+TEST(Text, WordsOfAShellAreQuotedWhereTheyNeedIt) {
+  EXPECT_EQ(shell_word("jobs/a-1.yaml"), "jobs/a-1.yaml");
+  EXPECT_EQ(shell_word("x;id;.yaml"), "'x;id;.yaml'");
+  EXPECT_EQ(shell_word("my $(job)"), "'my $(job)'");
+  EXPECT_EQ(shell_word("it's"), "'it'\\''s'");
+  EXPECT_EQ(shell_word(""), "''");
+}
+
 }  // namespace
 }  // namespace hyades::core
