@@ -66,11 +66,15 @@ bool names_job(std::string_view header, const std::string& job) {
   // Formats write other letters than these in ways of their own.
   const bool ascii =
       std::all_of(job.begin(), job.end(), [](char c) { return c >= ' ' && c <= '~' && c != '\\'; });
-  constexpr std::string_view kLine = "hyades.job: ";  // in the comments of JPEG and TIFF
+  // In the comments of JPEG and TIFF, a line each, and of videos, all in one.
+  constexpr std::string_view kLine = "hyades.job: ";
+  constexpr std::string_view kNext = "; hyades.";
   const size_t line = header.find(kLine);
   if (ascii && line != std::string_view::npos) {
     const std::string_view rest = header.substr(line + kLine.size());
-    return rest.starts_with(job) && (rest.size() == job.size() || rest[job.size()] < ' ');
+    if (!rest.starts_with(job)) return false;
+    const std::string_view after = rest.substr(job.size());
+    return after.empty() || after.front() < ' ' || after.starts_with(kNext);
   }
   const bool plain = ascii && job.find(' ') == std::string::npos;
   for (const std::string_view mark : {"hyades.job", "hyades film "}) {
