@@ -3,9 +3,7 @@
 #include <algorithm>
 #include <atomic>
 #include <chrono>
-#include <cmath>
 #include <cstddef>
-#include <iterator>
 #include <set>
 #include <utility>
 
@@ -26,10 +24,8 @@
 namespace hyades::coordinator {
 namespace {
 
-constexpr double kSmoothing = 10;  // seconds
 constexpr int kMostFiles = 100'000;
 constexpr int kMostRanges = 10'000;
-constexpr size_t kMostLinesWaiting = 2000;
 constexpr size_t kLongestPath = 4096;
 /// An open job of one frame with what the scheduler knows of it, without its spec: 5.8 kB by what
 /// malloc had given for a thousand of them.
@@ -159,21 +155,6 @@ int32_t tile_size_of(const ActiveJob& job) {
   return tile_size_of(job.region, job.samples, job.layout.layers.splats, job.threshold.adaptive());
 }
 
-void Speed::note(uint64_t done, TimePoint now, bool busy) {
-  if (last_ != TimePoint{} && busy) {
-    const double passed = std::chrono::duration<double>(now - last_).count();
-    if (passed <= 0) return;
-    // Of the time before it is counted how long it was, so that the first films of a job, or the
-    // first after a start, are not taken for what comes in a moment.
-    const double keep = std::exp(-passed / kSmoothing);
-    const double fresh = done > done_ ? static_cast<double>(done - done_) : 0.0;
-    samples_ = keep * samples_ + fresh;
-    seconds_ = keep * seconds_ + passed;
-  }
-  last_ = now;
-  done_ = done;
-}
-
 uint64_t ActiveJob::next_life() {
   static std::atomic<uint64_t> last{0};
   return ++last;
@@ -212,31 +193,7 @@ FrameNote& ActiveJob::touch(int32_t frame) {
 
 void ActiveJob::note(StoredLine line) {
   touch();
-  if (lines.size() < kMostLinesWaiting) {
-    lines.push_back(std::move(line));
-  } else {
-    ++lines_dropped;
-  }
-}
-
-std::vector<StoredLine> ActiveJob::take_lines() {
-  std::vector<StoredLine> taken = std::exchange(lines, {});
-  if (const uint64_t dropped = std::exchange(lines_dropped, 0); dropped > 0) {
-    taken.push_back({taken.back().time_ms, v1::LOG_LEVEL_WARNING, std::nullopt, "",
-                     core::counted(dropped, "line") + (dropped == 1 ? " was" : " were") +
-                         " dropped: too many at once"});
-  }
-  return taken;
-}
-
-void ActiveJob::put_back(std::vector<StoredLine> taken) {
-  taken.insert(taken.end(), std::make_move_iterator(lines.begin()),
-               std::make_move_iterator(lines.end()));
-  lines = std::move(taken);
-  if (lines.size() <= kMostLinesWaiting) return;
-  const size_t over = lines.size() - kMostLinesWaiting;
-  lines.erase(lines.begin(), lines.begin() + static_cast<std::ptrdiff_t>(over));
-  lines_dropped += over;
+  log.add(std::move(line));
 }
 
 v1::Job options_of(const StoredJob& job) {

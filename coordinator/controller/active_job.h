@@ -12,6 +12,8 @@
 
 #include <grpcpp/support/byte_buffer.h>
 
+#include "coordinator/controller/log_buffer.h"
+#include "coordinator/controller/speed.h"
 #include "coordinator/controller/state_lock.h"
 #include "coordinator/film_store/film_store.h"
 #include "coordinator/job_store/job_store.h"
@@ -54,24 +56,6 @@ struct FilmUnderWay {
   int64_t came_us = 0;     ///< when it arrived: microseconds since 1970, UTC
   TimePoint came;          ///< the same by the steady clock
   bool is_old = false;     ///< the worker had it before the coordinator started
-};
-
-/// How fast samples become durable, smoothed over some ten seconds.
-class Speed {
- public:
-  /// Notes that `done` samples in all are durable at `now`. Time in which nobody renders (not
-  /// `busy`) and what comes in it do not count.
-  void note(uint64_t done, TimePoint now, bool busy);
-  /// So many samples of those that are noted next were rendered long ago.
-  void skip(uint64_t samples) { done_ += samples; }
-  /// Samples per second; 0: not known yet.
-  double per_second() const { return seconds_ > 0 ? samples_ / seconds_ : 0; }
-
- private:
-  TimePoint last_;
-  uint64_t done_ = 0;
-  double samples_ = 0;  ///< lately, what is longer ago counting less
-  double seconds_ = 0;  ///< that these took, counted alike
 };
 
 /// All that the coordinator has in memory of a job that has not ended. What the state lock does not
@@ -133,12 +117,7 @@ struct ActiveJob {
   std::optional<double> noise HYADES_GUARDED_BY(state_lock);  ///< that was measured last
   TimePoint noise_measured HYADES_GUARDED_BY(state_lock);     ///< when that was
 
-  std::vector<StoredLine> lines HYADES_GUARDED_BY(state_lock);  ///< not stored yet
-  /// Lines too many since they were last taken.
-  uint64_t lines_dropped HYADES_GUARDED_BY(state_lock) = 0;
-  bool storing_lines HYADES_GUARDED_BY(state_lock) = false;
-  /// Storing lines has failed and is not tried again before.
-  TimePoint lines_again HYADES_GUARDED_BY(state_lock);
+  LogBuffer log HYADES_GUARDED_BY(state_lock);
   /// A task will store what has changed in `stored`.
   bool storing_row HYADES_GUARDED_BY(state_lock) = false;
   std::string trouble HYADES_GUARDED_BY(state_lock);      ///< why its films cannot be stored
@@ -166,11 +145,6 @@ struct ActiveJob {
   void touch() HYADES_REQUIRES(state_lock) { ++version; }
   /// Adds a line to the job's log; it is dropped and counted where too many wait for the disk.
   void note(StoredLine line) HYADES_REQUIRES(state_lock);
-  /// Takes the lines that wait, and a last one that tells of those dropped.
-  std::vector<StoredLine> take_lines() HYADES_REQUIRES(state_lock);
-  /// Puts lines that could not be stored before all others; the oldest of them go where too many
-  /// wait.
-  void put_back(std::vector<StoredLine> taken) HYADES_REQUIRES(state_lock);
   /// The frame that stands for the job in a list: the first in work of which something is there,
   /// else the last that was finished.
   std::optional<int32_t> preview_frame() const HYADES_REQUIRES(state_lock);

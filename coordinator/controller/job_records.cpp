@@ -136,8 +136,7 @@ void JobRecords::look_after(TimePoint now, bool disk_full, const Scheduler& sche
       active->core_stored = now;
       store(*active);
     }
-    if (active->lines.empty() || active->storing_lines || now < active->lines_again) continue;
-    active->storing_lines = true;
+    if (!active->log.begin_storing(now)) continue;
     context_.background.add(active->stored.id, [this, id = active->id] { return store_lines(id); });
   }
 }
@@ -149,16 +148,17 @@ bool JobRecords::store_lines(JobId id) {
     const StateLock lock(context_.mutex);
     ActiveJob* active = jobs_.find(id);
     if (active == nullptr) return true;
-    if (!active->lines.empty()) lines = active->take_lines();
+    if (!active->log.empty()) lines = active->log.take();
   }
   const core::Status stored = context_.store->add_lines(static_cast<uint64_t>(id), lines);
   const StateLock lock(context_.mutex);
   ActiveJob* still = jobs_.find(id);
   if (still == nullptr) return true;
-  still->storing_lines = false;
-  if (stored) return true;
-  still->put_back(std::move(lines));
-  still->lines_again = std::chrono::steady_clock::now() + kLinesAgain;
+  if (stored) {
+    still->log.stored();
+  } else {
+    still->log.not_stored(std::move(lines), std::chrono::steady_clock::now() + kLinesAgain);
+  }
   return true;
 }
 
@@ -200,7 +200,7 @@ bool JobRecords::store_end(uint64_t id) {
       over->touch();
       return false;
     }
-    lines = over->take_lines();
+    lines = over->log.take();
   }
   if (!lines.empty() && !context_.store->add_lines(id, lines)) {
     // The job is over for whoever waits for it; its last words come as long as there is hope.

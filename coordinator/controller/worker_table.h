@@ -13,6 +13,7 @@
 #include "coordinator/controller/controller_context.h"
 #include "coordinator/controller/dispatcher.h"
 #include "coordinator/controller/job_table.h"
+#include "coordinator/controller/speed.h"
 #include "coordinator/controller/worker_link.h"
 #include "hyades/v1/farm.pb.h"
 

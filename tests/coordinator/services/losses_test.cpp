@@ -2,6 +2,7 @@
 // are out.
 #include <gmock/gmock.h>
 
+#include "coordinator/controller/log_buffer.h"
 #include "tests/coordinator/services/farm_world.h"
 #include "tests/coordinator/services/troubled_store.h"
 
@@ -151,7 +152,7 @@ TEST_F(Losses, LinesThatCannotBeStoredWait) {
 }
 
 TEST(LossesOfTheCoordinator, LinesThatCannotBeStoredAreBounded) {
-  ActiveJob active({}, {});
+  LogBuffer log;
   const auto line_of = [](const std::string& text) {
     StoredLine line;
     line.text = text;
@@ -159,10 +160,15 @@ TEST(LossesOfTheCoordinator, LinesThatCannotBeStoredAreBounded) {
   };
   std::vector<StoredLine> old;
   for (int i = 0; i < 1999; ++i) old.push_back(line_of("old"));
-  active.note(line_of("new"));
-  active.note(line_of("newest"));
-  active.put_back(old);
-  const std::vector<StoredLine> taken = active.take_lines();
+  const TimePoint now;
+  log.add(line_of("new"));
+  ASSERT_TRUE(log.begin_storing(now));
+  EXPECT_FALSE(log.begin_storing(now)) << "somebody does";
+  log.add(line_of("newest"));
+  log.not_stored(old, now + 1s);
+  EXPECT_FALSE(log.begin_storing(now)) << "it has just failed";
+  EXPECT_TRUE(log.begin_storing(now + 1s));
+  const std::vector<StoredLine> taken = log.take();
   ASSERT_EQ(taken.size(), 2001U);
   EXPECT_EQ(taken[1999].text, "newest");
   EXPECT_EQ(taken[2000].text, "1 line was dropped: too many at once");
