@@ -116,10 +116,10 @@ class AssetFetcher::FileClaim {
 };
 
 AssetFetcher::AssetFetcher(std::shared_ptr<grpc::Channel> channel, std::string token,
-                           farm::ContentStore& store, Owner& owner, milliseconds patience)
+                           farm::ContentStore& store, Listener& listener, milliseconds patience)
     : channel_(std::move(channel)),
       store_(store),
-      owner_(owner),
+      listener_(listener),
       patience_(patience),
       most_pins_(most_pins()),
       token_(std::move(token)),
@@ -236,9 +236,9 @@ void AssetFetcher::loop() {
       if (wanted->dropped) continue;
     }
     if (failed) {
-      owner_.files_failed(wanted->job, failed->reason, failed->trouble);
+      listener_.files_failed(wanted->job, failed->reason, failed->trouble);
     } else {
-      owner_.files_are_there(wanted->job);
+      listener_.files_are_there(wanted->job);
     }
   }
 }

@@ -34,17 +34,17 @@ namespace hyades::worker {
 class AssetFetcher {
  public:
   /// Called from the fetching threads; must not block.
-  class Owner {
+  class Listener {
    public:
-    virtual ~Owner() = default;
+    virtual ~Listener() = default;
     virtual void files_are_there(uint64_t job) = 0;
     virtual void files_failed(uint64_t job, const std::string& reason, FilesTrouble trouble) = 0;
   };
 
-  /// `store` and `owner` outlive the fetcher. A coordinator that cannot be reached is tried again
-  /// for `patience`, a cache that takes no file for some seconds.
+  /// `store` and `listener` outlive the fetcher. A coordinator that cannot be reached is tried
+  /// again for `patience`, a cache that takes no file for some seconds.
   AssetFetcher(std::shared_ptr<grpc::Channel> channel, std::string token, farm::ContentStore& store,
-               Owner& owner, std::chrono::milliseconds patience);
+               Listener& listener, std::chrono::milliseconds patience);
   /// Breaks off what is being fetched.
   ~AssetFetcher();
   AssetFetcher(const AssetFetcher&) = delete;
@@ -111,7 +111,7 @@ class AssetFetcher {
 
   const std::shared_ptr<grpc::Channel> channel_;
   farm::ContentStore& store_;
-  Owner& owner_;
+  Listener& listener_;
   const std::chrono::milliseconds patience_;
   const size_t most_pins_;  ///< each is an open file
 

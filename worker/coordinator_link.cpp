@@ -59,12 +59,12 @@ struct CoordinatorLink::Stub {
 };
 
 struct CoordinatorLink::State {
-  Owner* owner = nullptr;
+  Listener* listener = nullptr;
   core::Mutex mutex;
   core::CondVar closed;
   std::string token HYADES_GUARDED_BY(mutex);
   std::shared_ptr<Stream> stream HYADES_GUARDED_BY(mutex);  ///< the one that is open
-  /// Streams whose end the owner has not heard of.
+  /// Streams whose end the listener has not heard of.
   int live HYADES_GUARDED_BY(mutex) = 0;
 };
 
@@ -139,7 +139,7 @@ class CoordinatorLink::Stream
         break_off_locked(message.error().message);
       }
     }
-    if (message) state_->owner->stream_says(std::move(*message));
+    if (message) state_->listener->stream_says(std::move(*message));
     const core::MutexLock lock(mutex_);
     reading_ = false;
     read_next_locked();
@@ -173,8 +173,8 @@ class CoordinatorLink::Stream
       self = std::move(state->stream);
       state->stream.reset();
     }
-    state->owner->stream_ended(end, reason,
-                               std::chrono::milliseconds(farm::detail_of(status).retry_after_ms()));
+    state->listener->stream_ended(
+        end, reason, std::chrono::milliseconds(farm::detail_of(status).retry_after_ms()));
     self.reset();  // this stream, and its part of the channel
     const core::MutexLock lock(state->mutex);
     --state->live;
@@ -218,7 +218,7 @@ class CoordinatorLink::Stream
   std::deque<v1::WorkerMessage> outgoing_ HYADES_GUARDED_BY(mutex_);
   size_t outgoing_bytes_ HYADES_GUARDED_BY(mutex_) = 0;
   v1::WorkerMessage current_ HYADES_GUARDED_BY(mutex_);
-  /// Bytes of the messages that the owner has before it.
+  /// Bytes of the messages that the listener has before it.
   std::deque<size_t> unheard_ HYADES_GUARDED_BY(mutex_);
   size_t unheard_bytes_ HYADES_GUARDED_BY(mutex_) = 0;
   bool reading_ HYADES_GUARDED_BY(mutex_) = true;  ///< from start() on
@@ -230,12 +230,12 @@ class CoordinatorLink::Stream
 };
 
 CoordinatorLink::CoordinatorLink(const std::shared_ptr<grpc::Channel>& channel, std::string token,
-                                 Owner& owner)
+                                 Listener& listener)
     : state_(std::make_shared<State>()),
       stub_(std::make_unique<Stub>(
           Stub{grpc::TemplatedGenericStub<v1::WorkerMessage, grpc::ByteBuffer>(channel)})) {
   state_->token = std::move(token);
-  state_->owner = &owner;
+  state_->listener = &listener;
 }
 
 CoordinatorLink::~CoordinatorLink() {

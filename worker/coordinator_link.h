@@ -26,10 +26,10 @@ enum class StreamEnd : uint8_t {
 class CoordinatorLink {
  public:
   /// Called from gRPC's threads; must not block and not call the link.
-  class Owner {
+  class Listener {
    public:
-    virtual ~Owner() = default;
-    /// To be answered by heard(), when nothing is left of it but what the owner keeps.
+    virtual ~Listener() = default;
+    /// To be answered by heard(), when nothing is left of it but what the listener keeps.
     virtual void stream_says(v1::CoordinatorMessage message) = 0;
     /// The stream is over. Where another one is worth it the coordinator asks not to come before
     /// `retry_after` has passed.
@@ -37,7 +37,8 @@ class CoordinatorLink {
                               std::chrono::milliseconds retry_after) = 0;
   };
 
-  CoordinatorLink(const std::shared_ptr<grpc::Channel>& channel, std::string token, Owner& owner);
+  CoordinatorLink(const std::shared_ptr<grpc::Channel>& channel, std::string token,
+                  Listener& listener);
   /// Breaks an open stream off and waits for its end.
   ~CoordinatorLink();
   CoordinatorLink(const CoordinatorLink&) = delete;
@@ -52,11 +53,12 @@ class CoordinatorLink {
   /// Queues a message; nothing happens where no stream is open.
   void send(v1::WorkerMessage message);
 
-  /// The owner is done with a message. While it has too many of them, or too much is queued, no
+  /// The listener is done with a message. While it has too many of them, or too much is queued, no
   /// more are read: a coordinator that talks without end takes no memory here.
   void heard();
 
-  /// Messages, and bytes of these, that the owner has before it at once (the last may be larger).
+  /// Messages, and bytes of these, that the listener has before it at once (the last may be
+  /// larger).
   static constexpr size_t kMostUnheard = 64;
   static constexpr size_t kMostUnheardBytes = size_t{1} << 20U;
   /// Messages to the coordinator, and bytes of these, that wait to be sent: beyond them nothing
@@ -64,7 +66,7 @@ class CoordinatorLink {
   static constexpr size_t kMostQueued = 10'000;
   static constexpr size_t kMostQueuedBytes = size_t{256} << 20U;
 
-  /// Ends the stream that is open at once; the owner hears of it, with this reason.
+  /// Ends the stream that is open at once; the listener hears of it, with this reason.
   void break_off(const std::string& reason);
 
   /// Whether everything that was sent has left this process.

@@ -18,7 +18,7 @@ namespace hyades::worker {
 
 /// The streams to the coordinator, one after the other: when the next one begins, under which id
 /// and with which token, and what is told of all that. For the loop's thread.
-class CoordinatorSession : private CoordinatorLink::Owner {
+class CoordinatorSession : private CoordinatorLink::Listener {
  public:
   /// `new_token` is told of a token that comes in place of the first.
   CoordinatorSession(const WorkerContext& worker, WorkerId id,

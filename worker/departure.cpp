@@ -33,7 +33,7 @@ void Departure::watch_for_preemption() {
   worker_.log.note(LogLevel::info, fmt::format("watches for notices of pre-emption by {}",
                                                name_of(*options.cloud)));
   preemption_.emplace(*options.cloud, options.cloud_endpoint,
-                      static_cast<PreemptionWatch::Owner&>(*this));
+                      static_cast<PreemptionWatch::Listener&>(*this));
 }
 
 void Departure::preempted(const Notice& notice) {

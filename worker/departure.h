@@ -12,7 +12,7 @@ namespace hyades::worker {
 
 /// When and how a worker goes: because somebody asks it to, because a cloud takes its machine away,
 /// because it has nothing to do, because it was drained. For the loop's thread.
-class Departure : private PreemptionWatch::Owner {
+class Departure : private PreemptionWatch::Listener {
  public:
   /// Time without work counts from `start` on.
   Departure(const WorkerContext& worker, RendererSupervisor& renderer, CoordinatorSession& session,

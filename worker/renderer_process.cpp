@@ -39,7 +39,7 @@ std::string describe_end(int status) {
 }  // namespace
 
 core::Result<std::unique_ptr<RendererProcess>> RendererProcess::start(
-    const RendererOptions& options, Owner& owner) {
+    const RendererOptions& options, Listener& listener) {
   std::array<int, 2> ends{};
   if (::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends.data()) != 0) {
     return core::Error{std::string("no socket pair for the renderer: ") + std::strerror(errno)};
@@ -73,11 +73,11 @@ core::Result<std::unique_ptr<RendererProcess>> RendererProcess::start(
     ::close(ends[0]);
     return core::Error{options.program + ": cannot be started: " + std::strerror(error)};
   }
-  return std::unique_ptr<RendererProcess>(new RendererProcess(pid, ends[0], owner));
+  return std::unique_ptr<RendererProcess>(new RendererProcess(pid, ends[0], listener));
 }
 
-RendererProcess::RendererProcess(pid_t pid, int fd, Owner& owner)
-    : owner_(owner),
+RendererProcess::RendererProcess(pid_t pid, int fd, Listener& listener)
+    : listener_(listener),
       pipe_(fd, renderer_limits()),
       pid_(pid),
       reader_([this] { read_loop(); }),
@@ -131,7 +131,7 @@ void RendererProcess::heard() {
   wake_.notify_all();
 }
 
-void RendererProcess::wait_for_owner(size_t bytes) {
+void RendererProcess::wait_for_listener(size_t bytes) {
   const core::MutexLock lock(mutex_);
   while (!closing_ && (unheard_.size() >= kMostUnheard || unheard_bytes_ >= kMostUnheardBytes)) {
     wake_.wait(mutex_);
@@ -153,8 +153,8 @@ void RendererProcess::read_loop() {
       kill(sound.error().message + " and was killed");
       break;
     }
-    wait_for_owner(bytes);
-    owner_.renderer_says(std::move(message));
+    wait_for_listener(bytes);
+    listener_.renderer_says(std::move(message));
   }
   kill_child();  // where it has merely closed its end
   siginfo_t info{};
@@ -173,7 +173,7 @@ void RendererProcess::read_loop() {
     closing_ = true;
     wake_.notify_all();
   }
-  if (!wanted) owner_.renderer_ended(reason);
+  if (!wanted) listener_.renderer_ended(reason);
 }
 
 void RendererProcess::write_loop() {

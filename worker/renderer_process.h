@@ -33,31 +33,32 @@ struct RendererOptions {
 class RendererProcess {
  public:
   /// Called from the process' own threads; must not block.
-  class Owner {
+  class Listener {
    public:
-    virtual ~Owner() = default;
-    /// To be answered by heard(), when nothing is left of it but what the owner keeps.
+    virtual ~Listener() = default;
+    /// To be answered by heard(), when nothing is left of it but what the listener keeps.
     virtual void renderer_says(pipe::FromRenderer message) = 0;
     /// The child is gone and will say no more. `reason` completes "the process ...".
     virtual void renderer_ended(const std::string& reason) = 0;
   };
 
   static core::Result<std::unique_ptr<RendererProcess>> start(const RendererOptions& options,
-                                                              Owner& owner);
-  /// Kills the child; the owner hears no more after this.
+                                                              Listener& listener);
+  /// Kills the child; the listener hears no more after this.
   ~RendererProcess();
   RendererProcess(const RendererProcess&) = delete;
   RendererProcess& operator=(const RendererProcess&) = delete;
 
-  /// The owner is done with a message. While it has too many of them, no more are read: a child
+  /// The listener is done with a message. While it has too many of them, no more are read: a child
   /// that talks without end takes no memory here.
   void heard() HYADES_EXCLUDES(mutex_);
 
-  /// Messages, and bytes of films, that the owner has before it at once (the last may be larger).
+  /// Messages, and bytes of films, that the listener has before it at once (the last may be
+  /// larger).
   static constexpr size_t kMostUnheard = 1000;
   static constexpr size_t kMostUnheardBytes = size_t{64} << 20U;
 
-  /// Ends the child; the owner hears of it when it is dead, with this reason.
+  /// Ends the child; the listener hears of it when it is dead, with this reason.
   void kill(const std::string& reason) HYADES_EXCLUDES(mutex_);
 
   /// Queues a message; never blocks. A child for which more than kMostUnread waits is killed: it
@@ -68,14 +69,14 @@ class RendererProcess {
   static constexpr size_t kMostUnread = size_t{256} << 20U;
 
  private:
-  RendererProcess(pid_t pid, int fd, Owner& owner);
+  RendererProcess(pid_t pid, int fd, Listener& listener);
   void read_loop() HYADES_EXCLUDES(mutex_);
   void write_loop() HYADES_EXCLUDES(mutex_);
   void kill_child() HYADES_EXCLUDES(mutex_);
   void kill_locked(const std::string& reason) HYADES_REQUIRES(mutex_);
-  void wait_for_owner(size_t bytes) HYADES_EXCLUDES(mutex_);
+  void wait_for_listener(size_t bytes) HYADES_EXCLUDES(mutex_);
 
-  Owner& owner_;
+  Listener& listener_;
   pipe::MessagePipe pipe_;
   const pid_t pid_;
   core::Mutex mutex_;
@@ -85,7 +86,7 @@ class RendererProcess {
   std::string killed_ HYADES_GUARDED_BY(mutex_);  ///< why, where this process did it
   std::deque<pipe::ToRenderer> outgoing_ HYADES_GUARDED_BY(mutex_);
   size_t outgoing_bytes_ HYADES_GUARDED_BY(mutex_) = 0;
-  /// Bytes of the messages that the owner has before it.
+  /// Bytes of the messages that the listener has before it.
   std::deque<size_t> unheard_ HYADES_GUARDED_BY(mutex_);
   size_t unheard_bytes_ HYADES_GUARDED_BY(mutex_) = 0;
   bool closing_ HYADES_GUARDED_BY(mutex_) = false;

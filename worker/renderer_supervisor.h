@@ -14,7 +14,7 @@ namespace hyades::worker {
 
 /// Keeps a rendering child alive: starts one, and another one when it dies, until it is the last.
 /// For the loop's thread.
-class RendererSupervisor : private RendererProcess::Owner {
+class RendererSupervisor : private RendererProcess::Listener {
  public:
   explicit RendererSupervisor(const WorkerContext& worker) : worker_(worker) {}
 

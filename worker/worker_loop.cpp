@@ -21,7 +21,7 @@ constexpr milliseconds kTick{50};
 constexpr milliseconds kFetchPatience{60'000};
 
 /// Posts what comes of fetching to the loop.
-class FetchedFiles : public AssetFetcher::Owner {
+class FetchedFiles : public AssetFetcher::Listener {
  public:
   explicit FetchedFiles(const WorkerContext& worker) : worker_(worker) {}
   void files_are_there(uint64_t job) override {

@@ -91,7 +91,7 @@ struct ActiveJob {
   Digest key{};  ///< JobBrief.key
 
   /// Reports to the controller.
-  std::unique_ptr<FilmStore::Owner> owner HYADES_GUARDED_BY(state_lock);
+  std::unique_ptr<FilmStore::Listener> film_listener HYADES_GUARDED_BY(state_lock);
   /// Null until there is a film. It has locks of its own.
   std::unique_ptr<FilmStore> film_store HYADES_GUARDED_BY(state_lock);
   /// Complete films until their frame is over.

@@ -18,9 +18,9 @@ constexpr uint64_t kWaitingBytes = uint64_t{256} << 20U;  ///< of films that wai
 }  // namespace
 
 /// Reports what becomes of one job's films.
-class JobFilms::Owner final : public FilmStore::Owner {
+class JobFilms::Listener final : public FilmStore::Listener {
  public:
-  Owner(JobFilms& films, JobId job) : films_(films), job_(job) {}
+  Listener(JobFilms& films, JobId job) : films_(films), job_(job) {}
 
   void persisted(RecordId record) override { films_.persisted(job_, record); }
   void not_persisted(RecordId record, const std::string& reason) override {
@@ -109,8 +109,8 @@ std::unique_ptr<FilmStore> JobFilms::make(ActiveJob& active, bool resume) {
   place.on_sync = [meters = context_.meters.get()](std::chrono::nanoseconds took) {
     meters->synced(took);
   };
-  if (!active.owner) active.owner = std::make_unique<Owner>(*this, active.id);
-  return std::make_unique<FilmStore>(std::move(films), std::move(place), *active.owner);
+  if (!active.film_listener) active.film_listener = std::make_unique<Listener>(*this, active.id);
+  return std::make_unique<FilmStore>(std::move(films), std::move(place), *active.film_listener);
 }
 
 /// A job gets its log and threads with its first film, so that those that wait cost little. The

@@ -29,7 +29,7 @@ class JobFilms {
   std::unique_ptr<FilmStore> make(ActiveJob& active, bool resume) HYADES_REQUIRES(state_lock);
 
  private:
-  class Owner;
+  class Listener;
   FilmStore& of(ActiveJob& active) HYADES_REQUIRES(state_lock);
   bool open(JobId job) HYADES_EXCLUDES(state_lock);
   void restart_frame(RecordId id, const FrameRestartedRecord& again) HYADES_REQUIRES(state_lock);

@@ -37,8 +37,8 @@ bool too_large(const core::Film& film) {
 
 }  // namespace
 
-FilmStore::FilmStore(FilmSet films, FilmStoreOptions options, Owner& owner)
-    : set_(std::move(films)), options_(std::move(options)), owner_(owner) {}
+FilmStore::FilmStore(FilmSet films, FilmStoreOptions options, Listener& listener)
+    : set_(std::move(films)), options_(std::move(options)), listener_(listener) {}
 
 FilmStore::~FilmStore() {
   drain();
@@ -280,21 +280,21 @@ void FilmStore::run() {
     settle(durable);
     if (try_again_at_ && now() >= *try_again_at_) {
       try_again_at_.reset();
-      owner_.try_again();
+      listener_.try_again();
     }
     if (!hopeless.empty()) {
       gave_up_ = true;
-      owner_.storage_failed(hopeless);
+      listener_.storage_failed(hopeless);
     }
     if (last) break;
     compact_if_worthwhile(room_wanted);
   }
   if (log_) {
     const core::Status synced = log_->sync();
-    if (!synced) owner_.storage_failed(synced.error().message);
+    if (!synced) listener_.storage_failed(synced.error().message);
     settle(log_->durable());
   }
-  owner_.drained();
+  listener_.drained();
 }
 
 void FilmStore::append(std::deque<Item> items) {
@@ -308,7 +308,7 @@ void FilmStore::append(std::deque<Item> items) {
       auto sequence = log_->append(std::move(item.bytes));
       if (!sequence) {
         release(item.memory);
-        owner_.not_persisted(item.id, sequence.error().message);
+        listener_.not_persisted(item.id, sequence.error().message);
         try_again_at_ = now() + kTryAgain;
         continue;
       }
@@ -331,7 +331,7 @@ void FilmStore::settle(uint64_t durable) {
     settling_ = &item;
     settled_sequence_ = std::max(settled_sequence_, item.sequence);
     apply(item.record);
-    owner_.persisted(item.id);
+    listener_.persisted(item.id);
     settling_ = nullptr;
     release(item.memory);
   }
@@ -393,7 +393,7 @@ core::Status FilmStore::merge(RecordId record) {
   if (const core::Status fits = whole->check_id_room(); !fits) {
     // Whoever looks at the film meanwhile keeps what was there.
     whole = std::make_shared<core::Film>(film.layout(), set_.region, film.splats().region());
-    owner_.outgrown(unit->accepted.unit.frame, fits.error().message);
+    listener_.outgrown(unit->accepted.unit.frame, fits.error().message);
   }
   return {};
 }

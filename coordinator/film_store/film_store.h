@@ -69,9 +69,9 @@ struct FilmStoreOptions {
 class FilmStore {
  public:
   /// Whom the store's thread reports to.
-  class Owner {
+  class Listener {
    public:
-    virtual ~Owner() = default;
+    virtual ~Listener() = default;
     /// The record is durable. Its film may be merged during this call.
     virtual void persisted(RecordId record) = 0;
     /// The record could not be taken; the film of a unit is lost.
@@ -87,7 +87,7 @@ class FilmStore {
     virtual void drained() = 0;
   };
 
-  FilmStore(FilmSet films, FilmStoreOptions options, Owner& owner);
+  FilmStore(FilmSet films, FilmStoreOptions options, Listener& listener);
   ~FilmStore();
 
   /// Opens the log, if there is to be one, and returns what it holds of the frames it is for.
@@ -122,7 +122,7 @@ class FilmStore {
   /// Has the store's thread call `what` soon.
   void call(std::function<void()> what);
 
-  // The store's thread (from within Owner's functions), or before start().
+  // The store's thread (from within Listener's functions), or before start().
 
   /// Adds the film that was handed over as `record` and is durable now.
   core::Status merge(RecordId record);
@@ -160,7 +160,7 @@ class FilmStore {
 
   const FilmSet set_;
   const FilmStoreOptions options_;
-  Owner& owner_;
+  Listener& listener_;
 
   /// Shared with those who hand over and with the log's commit thread.
   mutable core::Mutex mutex_;
@@ -194,7 +194,7 @@ class FilmStore {
   TimePoint compact_again_;                  ///< after a failure
   bool others_films_ = false;                ///< the log has films of frames that nobody asked for
   std::optional<TimePoint> try_again_at_;
-  bool gave_up_ = false;  ///< the owner knows of the trouble that there is
+  bool gave_up_ = false;  ///< the listener knows of the trouble that there is
 
   std::unique_ptr<FilmLog> log_;
   std::thread thread_;

@@ -25,7 +25,7 @@ namespace hyades::coordinator {
 /// renders one unit; one loads the next frame while the last one's tail renders; one keeps films
 /// (FilmStore); one finishes frames. Films are the same bits whatever the number of threads and how
 /// often the run was stopped, killed and resumed; without a threshold also whatever the tile size.
-class LocalRun : private FilmStore::Owner {
+class LocalRun : private FilmStore::Listener {
  public:
   /// `source`, `sink` and `audience`, which may be null, outlive the run.
   LocalRun(LocalPlan plan, const FilmStoreOptions& log, FrameSource& source, FrameSink& sink,
@@ -114,7 +114,7 @@ class LocalRun : private FilmStore::Owner {
   void count_locked(const core::Unit& unit, bool done) HYADES_REQUIRES(mutex_);
   void note_film(int32_t frame, const core::Film& film);
 
-  // FilmStore::Owner
+  // FilmStore::Listener
   void persisted(RecordId record) override;
   void not_persisted(RecordId record, const std::string& reason) override;
   void outgrown(int32_t frame, const std::string& reason) override;

@@ -72,7 +72,7 @@ class StuckAssets : public v1::Assets::Service {
   int gone_ = 0;   ///< of these
 };
 
-class Reports : public AssetFetcher::Owner {
+class Reports : public AssetFetcher::Listener {
  public:
   void files_are_there(uint64_t job) override { add(job, "there"); }
   void files_failed(uint64_t job, const std::string& reason, FilesTrouble trouble) override {

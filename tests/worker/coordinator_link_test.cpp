@@ -60,7 +60,7 @@ class Talker : public v1::Work::Service {
   std::unique_ptr<grpc::Server> server_;
 };
 
-class Listener : public CoordinatorLink::Owner {
+class Listener : public CoordinatorLink::Listener {
  public:
   void stream_says(v1::CoordinatorMessage /*message*/) override {
     const std::lock_guard lock(mutex_);

@@ -22,7 +22,7 @@ namespace {
 using std::chrono::milliseconds;
 using std::chrono::seconds;
 
-class Ears : public RendererProcess::Owner {
+class Ears : public RendererProcess::Listener {
  public:
   void renderer_says(pipe::FromRenderer message) override {
     const std::lock_guard lock(mutex_);
@@ -64,11 +64,11 @@ class Script {
         << "#!/bin/sh\ncd '" << folder_.path().string() << "'\n" + lines + "\n";
     ::chmod(folder_.file("program").c_str(), 0700);
   }
-  std::unique_ptr<RendererProcess> start(RendererProcess::Owner& owner) {
+  std::unique_ptr<RendererProcess> start(RendererProcess::Listener& listener) {
     RendererOptions options;
     options.program = folder_.file("program");
     options.cache = folder_.path();
-    auto started = RendererProcess::start(options, owner);
+    auto started = RendererProcess::start(options, listener);
     EXPECT_TRUE(started) << started.error().message;
     return started ? std::move(*started) : nullptr;
   }

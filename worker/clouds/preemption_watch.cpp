@@ -15,8 +15,8 @@ constexpr const char* kLinkLocal = "http://169.254.169.254";
 
 }  // namespace
 
-PreemptionWatch::PreemptionWatch(Cloud cloud, const std::string& endpoint, Owner& owner)
-    : owner_(owner),
+PreemptionWatch::PreemptionWatch(Cloud cloud, const std::string& endpoint, Listener& listener)
+    : listener_(listener),
       metadata_(std::make_unique<Metadata>(endpoint.empty() ? kLinkLocal : endpoint)),
       thread_([this, cloud] { run(cloud); }) {}
 
@@ -36,11 +36,11 @@ void PreemptionWatch::run(Cloud cloud) {
     const auto looked = source->look();
     if (metadata_->stopped()) return;
     if (looked && *looked) {
-      owner_.preempted(**looked);
+      listener_.preempted(**looked);
       return;
     }
     const std::string trouble = looked ? std::string() : looked.error().message;
-    if (!trouble.empty() && trouble != told) owner_.watch_trouble(trouble);
+    if (!trouble.empty() && trouble != told) listener_.watch_trouble(trouble);
     if (!trouble.empty()) told = trouble;
     const auto again = Clock::now() + source->pause();
     const core::MutexLock lock(mutex_);

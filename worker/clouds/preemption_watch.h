@@ -18,9 +18,9 @@ class Metadata;
 class PreemptionWatch {
  public:
   /// Called from the watch's thread.
-  class Owner {
+  class Listener {
    public:
-    virtual ~Owner() = default;
+    virtual ~Listener() = default;
     /// The machine goes; said once, and the watch is over.
     virtual void preempted(const Notice& notice) = 0;
     /// The service does not answer as it should; said once, until the reason changes.
@@ -28,7 +28,7 @@ class PreemptionWatch {
   };
 
   /// `endpoint`: another service than the cloud's own, for tests; empty: that one.
-  PreemptionWatch(Cloud cloud, const std::string& endpoint, Owner& owner);
+  PreemptionWatch(Cloud cloud, const std::string& endpoint, Listener& listener);
   /// Ends what is being asked.
   ~PreemptionWatch();
   PreemptionWatch(const PreemptionWatch&) = delete;
@@ -37,7 +37,7 @@ class PreemptionWatch {
  private:
   void run(Cloud cloud) HYADES_EXCLUDES(mutex_);
 
-  Owner& owner_;
+  Listener& listener_;
   const std::unique_ptr<Metadata> metadata_;
   core::Mutex mutex_;  ///< with it the thread looks whether it was stopped before it waits
   core::CondVar wake_;

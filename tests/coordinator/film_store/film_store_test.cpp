@@ -15,7 +15,7 @@ namespace {
 constexpr uint32_t kFilmSamples = 16;
 
 /// A film store on files in memory, and somebody who merges what is durable.
-class Kept final : public FilmStore::Owner {
+class Kept final : public FilmStore::Listener {
  public:
   explicit Kept(FaultyFiles& files, Duration patience = std::chrono::seconds(30))
       : film_store_(films(), log(files, patience), *this) {

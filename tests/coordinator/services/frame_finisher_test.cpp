@@ -104,7 +104,7 @@ struct FinisherWorld {
 };
 
 /// A film store's owner that takes its time before it merges a film.
-class SlowMerger final : public FilmStore::Owner {
+class SlowMerger final : public FilmStore::Listener {
  public:
   explicit SlowMerger(ActiveJob& active) : active_(active) {}
   void persisted(RecordId record) override {

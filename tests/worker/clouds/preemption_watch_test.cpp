@@ -17,7 +17,7 @@ namespace {
 
 using Manner = FakeCloud::Manner;
 
-class Heard : public PreemptionWatch::Owner {
+class Heard : public PreemptionWatch::Listener {
  public:
   void preempted(const Notice& notice) override {
     const std::lock_guard lock(mutex_);
