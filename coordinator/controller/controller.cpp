@@ -84,8 +84,8 @@ struct Controller::Parts {
   VideoMaker videos{context, jobs, records, disk, timelines};
   JobRecovery recovery{context, dispatcher, jobs, films};
   Sweeper sweeper{context, unclaimed};
-  JobIntake intake{context, dispatcher, jobs,      queries, records,  recovery,
-                   disk,    sweeper,    timelines, quotas,  unclaimed};
+  JobIntake intake{context, dispatcher, jobs,      queries, records, recovery,
+                   disk,    sweeper,    timelines, videos,  quotas,  unclaimed};
   JobSteering steering{context, dispatcher, jobs, queries, records, finisher, videos};
   Diagnosis diagnosis{context, dispatcher, jobs, workers, sessions, disk, videos};
   ActionExecutor executor{context, jobs,      workers, sessions, films,
@@ -169,6 +169,7 @@ void Controller::stop() {
 Controller::~Controller() {
   stop();
   parts_->clock.end();
+  parts_->recovery.end();
   parts_->finisher.end();
   parts_->videos.end();
   parts_->sweeper.end();

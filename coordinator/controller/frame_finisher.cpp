@@ -42,17 +42,16 @@ core::Status find_color_files(FinishTask& task, const std::vector<core::AssetRec
 /// A frame whose film is complete.
 struct FrameFinisher::Completed {
   JobId job{};
+  uint64_t life = 0;  ///< ActiveJob::life: of a job that was cancelled and retried nothing is left
   int32_t frame = 0;
-  uint64_t volume = 0;  ///< FinishFrame::volume
-  std::shared_ptr<const core::Film> film;
+  uint64_t volume = 0;                                ///< FinishFrame::volume
   std::vector<std::string> parts;                     ///< StoredFrame::parts
   std::optional<std::string> failure = std::nullopt;  ///< why its outputs could not be made
 };
 
 void FrameFinisher::add(ActiveJob& active, const FinishFrame& asked,
                         std::vector<std::string> parts) {
-  Completed completed{active.id, asked.frame, asked.volume, active.complete[asked.frame],
-                      std::move(parts)};
+  Completed completed{active.id, active.life, asked.frame, asked.volume, std::move(parts)};
   queue_.add(
       active.stored.id,
       [this, completed = std::move(completed)]() mutable { return finish(completed); },
@@ -104,7 +103,9 @@ bool FrameFinisher::finish(Completed& completed) {
   const InWork in_work(*this, completed.job);
   std::string spec, owner;
   StoredFrame over;
-  if (!begin(completed, spec, owner, over)) return !completed.failure;
+  // Not in the tasks that wait: what a job has in memory goes with it.
+  const std::shared_ptr<const core::Film> film = begin(completed, spec, owner, over);
+  if (!film) return !completed.failure;
   auto document = context_.documents.read_stored(spec, kReadingPatience, owner);
   if (!document) return false;  // it is tried again
   const int64_t begun_us = core::wall_us();
@@ -112,10 +113,11 @@ bool FrameFinisher::finish(Completed& completed) {
                         : core::Result<FinishTask>(document->error());
   document.reset();  // making the outputs takes its time
   bool written = false;
-  const core::Status done = task ? make_outputs(completed, *task, over, in_work.stop(), written)
-                                 : core::Status(task.error());
+  const core::Status done =
+      task ? make_outputs(completed, *film, *task, over, in_work.stop(), written)
+           : core::Status(task.error());
   // What is written and cannot be stored is no fault of the frame's, nor is a full disk.
-  const bool waits = !done && (written || disk_.is_short_for(*completed.film));
+  const bool waits = !done && (written || disk_.is_short_for(*film));
   Turn turn(dispatcher_);
   if (in_work.stop() && !written) return true;
   if (waits) {
@@ -141,24 +143,26 @@ bool FrameFinisher::finish(Completed& completed) {
   return true;
 }
 
-/// What the frame is of, and what it will be when it is `over`; false where the job is gone, or the
-/// frame has failed.
-bool FrameFinisher::begin(Completed& completed, std::string& spec, std::string& owner,
-                          StoredFrame& over) {
+/// The frame's film, what it is of, and what it will be when it is `over`; null where the job is
+/// gone, or the frame has failed.
+std::shared_ptr<const core::Film> FrameFinisher::begin(Completed& completed, std::string& spec,
+                                                       std::string& owner, StoredFrame& over) {
   const StateLock lock(context_.mutex);
   ActiveJob* active = jobs_.find(completed.job);
-  if (active == nullptr || active->ending) return false;
+  if (active == nullptr || active->ending || active->life != completed.life) return nullptr;
+  const auto film = active->complete.find(completed.frame);
   // Where a film could not be merged some of it is missing.
-  if (!completed.film || completed.film->coverage().volume() != completed.volume) {
+  if (film == active->complete.end() || !film->second ||
+      film->second->coverage().volume() != completed.volume) {
     completed.failure = "its film is not whole: 'retry' renders it again";
-    return false;
+    return nullptr;
   }
   spec = active->stored.spec;
   owner = active->stored.owner;
   const FrameNote& note = active->frames[completed.frame];
   over = {completed.frame,    true, {}, note.worker_class, note.restarts, completed.parts,
           jobs_.next_moment()};
-  return true;
+  return film->second;
 }
 
 /// What the finisher is told of the frame that will be `over`.
@@ -178,14 +182,14 @@ core::Result<FinishTask> FrameFinisher::task_of(const farm::ReadJob& read, uint6
 }
 
 /// Has the outputs made and stores that the frame is over; `written`: the first of it is done.
-core::Status FrameFinisher::make_outputs(const Completed& completed, const FinishTask& task,
-                                         const StoredFrame& over, const std::atomic<bool>& stop,
-                                         bool& written) const {
+core::Status FrameFinisher::make_outputs(const Completed& completed, const core::Film& film,
+                                         const FinishTask& task, const StoredFrame& over,
+                                         const std::atomic<bool>& stop, bool& written) const {
   const auto id = static_cast<uint64_t>(completed.job);
   const core::FpMode mode;
   const std::string scratch =
       fmt::format("{}/tmp/{}-{}", context_.options.folder, id, completed.frame);
-  const auto files = run_finisher(context_.options.finisher, scratch, task, *completed.film, stop);
+  const auto files = run_finisher(context_.options.finisher, scratch, task, film, stop);
   if (!files) return files.error();
   written = true;
   core::failpoint("outputs-written");

@@ -44,13 +44,14 @@ class FrameFinisher {
   class InWork;
   struct Completed;
   bool finish(Completed& completed) HYADES_EXCLUDES(state_lock);
-  bool begin(Completed& completed, std::string& spec, std::string& owner, StoredFrame& over)
+  std::shared_ptr<const core::Film> begin(Completed& completed, std::string& spec,
+                                          std::string& owner, StoredFrame& over)
       HYADES_EXCLUDES(state_lock);
   core::Result<FinishTask> task_of(const farm::ReadJob& read, uint64_t job,
                                    const StoredFrame& over) const;
-  core::Status make_outputs(const Completed& completed, const FinishTask& task,
-                            const StoredFrame& over, const std::atomic<bool>& stop,
-                            bool& written) const;
+  core::Status make_outputs(const Completed& completed, const core::Film& film,
+                            const FinishTask& task, const StoredFrame& over,
+                            const std::atomic<bool>& stop, bool& written) const;
 
   ControllerContext& context_;
   Dispatcher& dispatcher_;

@@ -170,7 +170,7 @@ void FrameProgress::reopened(ActiveJob& active, const FrameReopened& action) {
              "is not done: a unit that was rendered differently twice is rendered once more");
   // Should this be lost, or come after the frame is done again, it is rendered again or stays.
   context_.background.add(active.stored.id, [this, id = active.stored.id, frame] {
-    (void)context_.store->forget_frame(id, frame);
+    (void)context_.store->forget_frames(id, {&frame, 1});
     return true;
   });
 }

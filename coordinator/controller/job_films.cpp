@@ -1,10 +1,12 @@
 #include "coordinator/controller/job_films.h"
 
 #include <chrono>
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <utility>
 #include <variant>
+#include <vector>
 
 #include "coordinator/controller/divergent_workers.h"
 #include "coordinator/meters/meters.h"
@@ -13,6 +15,7 @@
 namespace hyades::coordinator {
 namespace {
 
+constexpr size_t kRestartsAtOnce = 1000;
 constexpr uint64_t kWaitingBytes = uint64_t{256} << 20U;  ///< of films that wait for the disk
 
 }  // namespace
@@ -69,15 +72,42 @@ void JobFilms::persist(const Persist& persist, Delivery* delivery) {
 }
 
 void JobFilms::restart_frame(RecordId id, const FrameRestartedRecord& again) {
-  const auto job = static_cast<uint64_t>(again.job);
-  context_.background.add(job, [this, job, id, again] {
-    const core::Status forgotten = context_.store->forget_frame(job, again.frame);
+  std::deque<Restart>& waiting = restarts_[again.job];
+  waiting.push_back({id, again});
+  if (waiting.size() > 1) return;
+  context_.background.add(static_cast<uint64_t>(again.job),
+                          [this, job = again.job] { return restart_some(job); });
+}
+
+/// Many frames may begin again together: each by itself would wait for the disk.
+bool JobFilms::restart_some(JobId job) {
+  std::vector<int32_t> frames;
+  {
     const StateLock lock(context_.mutex);
-    ActiveJob* still = jobs_.find(again.job);
-    if (still == nullptr || still->ending) return true;
-    if (forgotten) of(*still).append(id, again);
-    return forgotten.ok();
-  });
+    for (const Restart& one : restarts_[job]) {
+      if (frames.size() == kRestartsAtOnce) break;
+      frames.push_back(one.record.frame);
+    }
+  }
+  const core::Status forgotten = context_.store->forget_frames(static_cast<uint64_t>(job), frames);
+  const StateLock lock(context_.mutex);
+  ActiveJob* still = jobs_.find(job);
+  if (still == nullptr || still->ending) {
+    restarts_.erase(job);
+    return true;
+  }
+  if (!forgotten) return false;
+  std::deque<Restart>& waiting = restarts_[job];
+  for (size_t i = 0; i < frames.size(); ++i) {
+    of(*still).append(waiting.front().id, waiting.front().record);
+    waiting.pop_front();
+  }
+  if (waiting.empty()) {
+    restarts_.erase(job);
+  } else {
+    context_.background.add(static_cast<uint64_t>(job), [this, job] { return restart_some(job); });
+  }
+  return true;
 }
 
 void JobFilms::fail_frame(ActiveJob& active, RecordId id, const FrameFailedRecord& record) {

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <cstdint>
+#include <deque>
+#include <map>
 #include <memory>
 #include <string>
 
@@ -33,6 +35,7 @@ class JobFilms {
   FilmStore& of(ActiveJob& active) HYADES_REQUIRES(state_lock);
   bool open(JobId job) HYADES_EXCLUDES(state_lock);
   void restart_frame(RecordId id, const FrameRestartedRecord& again) HYADES_REQUIRES(state_lock);
+  bool restart_some(JobId job) HYADES_EXCLUDES(state_lock);
   void fail_frame(ActiveJob& active, RecordId id, const FrameFailedRecord& record)
       HYADES_REQUIRES(state_lock);
 
@@ -47,6 +50,12 @@ class JobFilms {
   Dispatcher& dispatcher_;
   JobTable& jobs_;
   DivergentWorkers& divergent_;
+  struct Restart {
+    RecordId id;
+    FrameRestartedRecord record;
+  };
+  /// Frames that begin again once that is stored.
+  std::map<JobId, std::deque<Restart>> restarts_ HYADES_GUARDED_BY(state_lock);
 };
 
 }  // namespace hyades::coordinator

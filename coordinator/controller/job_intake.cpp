@@ -18,6 +18,7 @@
 #include "coordinator/controller/job_steering.h"
 #include "coordinator/controller/not_found.h"
 #include "coordinator/controller/sweeper.h"
+#include "coordinator/controller/video_maker.h"
 #include "core/base/failpoint.h"
 #include "core/base/printable.h"
 #include "core/base/text.h"
@@ -279,7 +280,8 @@ grpc::Status JobIntake::reopen(uint64_t id, std::optional<JobRead> read, v1::Job
     return farm::retry_later(grpc::StatusCode::UNAVAILABLE,
                              fmt::format("job {} has ended just now", id), std::chrono::seconds(1));
   }
-  if (core::Status gone = forget_failed_frames(id); !gone) return farm::unavailable(gone.error());
+  if (core::Status gone = context_.store->forget_failed_frames(id); !gone)
+    return farm::unavailable(gone.error());
   const StoredJob before = job;
   job.state = StoredState::running;
   job.ended_ms = 0;
@@ -317,16 +319,6 @@ grpc::Status JobIntake::may_reopen(uint64_t id, StoredJob& job) {
   return has_room_for(job.owner, {job.frames, memory_of(job)});
 }
 
-core::Status JobIntake::forget_failed_frames(uint64_t id) {
-  const auto frames = context_.store->frames(id);
-  if (!frames) return frames.error();
-  for (const StoredFrame& frame : *frames) {
-    if (frame.done) continue;
-    if (auto gone = context_.store->forget_frame(id, frame.frame); !gone) return gone;
-  }
-  return {};
-}
-
 grpc::Status JobIntake::remove(uint64_t id) {
   const auto one = context_.wait_for_submissions();
   if (!one) return others_submit();
@@ -342,6 +334,7 @@ grpc::Status JobIntake::remove(uint64_t id) {
   const auto stored = context_.store->job(id);
   if (const grpc::Status there = job_is_there(id, stored); !there.ok()) return there;
   if (core::Status gone = forget(id); !gone) return farm::unavailable(gone.error());
+  videos_.forget(id);
   // Its files have been of use until now: they stay for a while, should it come again.
   v1::JobSpec spec;
   if (spec.ParseFromString((*stored)->spec)) {

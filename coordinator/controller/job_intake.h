@@ -23,6 +23,7 @@ class JobQueries;
 class JobRecovery;
 struct JobRead;
 class Sweeper;
+class VideoMaker;
 
 /// Jobs that come, come again and go. All may wait for the disk, and for other submissions up to
 /// two seconds. Errors as docs/wire.md has them. Thread-safe.
@@ -30,7 +31,8 @@ class JobIntake {
  public:
   JobIntake(ControllerContext& context, Dispatcher& dispatcher, JobTable& jobs, JobQueries& queries,
             JobRecords& records, JobRecovery& recovery, DiskWatch& disk, Sweeper& sweeper,
-            Timelines& timelines, const OwnerQuotas& quotas, UnclaimedFiles& unclaimed)
+            Timelines& timelines, VideoMaker& videos, const OwnerQuotas& quotas,
+            UnclaimedFiles& unclaimed)
       : context_(context),
         dispatcher_(dispatcher),
         jobs_(jobs),
@@ -40,6 +42,7 @@ class JobIntake {
         disk_(disk),
         sweeper_(sweeper),
         timelines_(timelines),
+        videos_(videos),
         quotas_(quotas),
         unclaimed_(unclaimed) {}
 
@@ -61,7 +64,6 @@ class JobIntake {
   grpc::Status reopen(uint64_t job, std::optional<JobRead> read, v1::Job& now)
       HYADES_EXCLUDES(state_lock);
   grpc::Status may_reopen(uint64_t id, StoredJob& job) HYADES_EXCLUDES(state_lock);
-  core::Status forget_failed_frames(uint64_t job);
   core::Status forget(uint64_t job);
   grpc::Status answer_with(uint64_t job, bool existed, v1::SubmitResponse& response)
       HYADES_EXCLUDES(state_lock);
@@ -80,6 +82,7 @@ class JobIntake {
   DiskWatch& disk_;
   Sweeper& sweeper_;
   Timelines& timelines_;
+  VideoMaker& videos_;
   const OwnerQuotas& quotas_;
   UnclaimedFiles& unclaimed_;
 };

@@ -9,6 +9,7 @@
 #include <string>
 #include <system_error>
 #include <utility>
+#include <vector>
 
 #include "coordinator/controller/job_films.h"
 #include "coordinator/controller/worker_link.h"
@@ -166,9 +167,11 @@ void JobRecovery::wait(uint64_t id, const core::Error& why) {
   waiting.id = id;
   waiting.reason = "waits to be taken up again: " + why.message;
   if (!waiting.spec.empty()) (void)context_.store->update_job(waiting);
+  const std::string owner = waiting.owner;
   const StateLock lock(context_.mutex);
   jobs_.wait_for_recovery(std::move(waiting));
-  context_.background.add(id, [this, id] { return recover_later(id); });
+  queue_.add(
+      id, [this, id] { return recover_later(id); }, owner);
 }
 
 /// Whether there is nothing left to try; for the job's tasks.
@@ -189,6 +192,10 @@ bool JobRecovery::try_to_recover(uint64_t id) {
   const auto stored = context_.store->job(id);
   if (!stored) return false;
   if (!*stored || has_ended((*stored)->state)) return true;  // somebody has deleted it
+  {
+    const StateLock lock(context_.mutex);
+    if (jobs_.find(JobId{id}) != nullptr) return true;  // cancelled, and retried
+  }
   const core::Status recovered = recover(id, std::move(again), kRestarted);
   if (recovered) return true;
   return obstacle == Obstacle::lasting && give_up(id, recovered.error()).ok();
@@ -211,7 +218,14 @@ core::Status JobRecovery::recover(uint64_t id, JobRead read, const std::string& 
   if (!stored) return stored.error();
   if (!*stored) return core::Error{"it is not there"};
   ActiveJob& active = **read.job;
-  active.stored = std::move(**stored);
+  // What its document says was read; all else may have changed meanwhile.
+  StoredJob now = std::move(**stored);
+  now.name = std::move(active.stored.name);
+  now.options = std::move(active.stored.options);
+  now.frames = active.stored.frames;
+  now.samples = active.stored.samples;
+  now.reason.clear();  // why it waited
+  active.stored = std::move(now);
   active.id = JobId{id};
   active.core_ns_stored = active.stored.core_ns;
   jobs_.note(active, v1::LOG_LEVEL_INFO, std::nullopt, {}, told);
@@ -227,12 +241,13 @@ core::Result<RestoredJob> JobRecovery::restore_frames(ActiveJob& active) {
   if (!frames) return frames.error();
   const auto repeated = frames_to_repeat(active, *frames);
   if (!repeated) return repeated.error();
+  const std::vector<int32_t> anew(repeated->begin(), repeated->end());
+  if (auto gone = context_.store->forget_frames(id, anew); !gone) return gone.error();
   RestoredJob restored;
   active.stored.preview.reset();  // it may be rendered again
   for (const StoredFrame& frame : *frames) {
     FrameNote& note = active.frames[frame.frame];
     if (repeated->contains(frame.frame)) {
-      if (auto gone = context_.store->forget_frame(id, frame.frame); !gone) return gone.error();
       note.restarts = frame.restarts + 1;
       jobs_.note(
           active, v1::LOG_LEVEL_WARNING, frame.frame, {},

@@ -10,6 +10,7 @@
 #include "coordinator/controller/controller_context.h"
 #include "coordinator/controller/dispatcher.h"
 #include "coordinator/controller/job_table.h"
+#include "farm/retry_queue.h"
 
 namespace hyades::coordinator {
 
@@ -39,6 +40,9 @@ class JobRecovery {
  public:
   JobRecovery(ControllerContext& context, Dispatcher& dispatcher, JobTable& jobs, JobFilms& films)
       : context_(context), dispatcher_(dispatcher), jobs_(jobs), films_(films) {}
+
+  /// Waits for what is in work.
+  void end() { queue_.end(); }
 
   /// Recovers all jobs that have not ended. One whose files are gone fails alone; one that cannot
   /// be recovered now or within ControllerOptions::recovery_time, or cannot be stored as failed,
@@ -73,6 +77,8 @@ class JobRecovery {
   Dispatcher& dispatcher_;
   JobTable& jobs_;
   JobFilms& films_;
+  /// Jobs that wait, by their ids: long documents hold up nothing but each other.
+  farm::RetryQueue queue_{1};
 };
 
 }  // namespace hyades::coordinator

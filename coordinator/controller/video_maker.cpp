@@ -4,7 +4,7 @@
 #include <chrono>
 #include <cstddef>
 #include <filesystem>
-#include <limits>
+#include <optional>
 #include <string>
 #include <system_error>
 #include <utility>
@@ -32,6 +32,8 @@ constexpr size_t kMostWaiting = 64;
 constexpr size_t kMostWaitingOfOne = 8;
 constexpr size_t kMostKept = 200;  ///< that were asked for, with what became of them
 constexpr uint32_t kRowsAtOnce = 1000;
+/// Keys of videos that were asked for: others are of jobs.
+constexpr uint64_t kAsked = uint64_t{1} << 63U;
 
 bool is_over(const RequestedVideo& video) {
   return video.state == RequestedVideo::State::done || video.state == RequestedVideo::State::failed;
@@ -57,119 +59,96 @@ std::string in_words(const std::vector<core::VideoDesc>& videos) {
 
 }  // namespace
 
+/// A video in work, as long as this is there.
+class VideoMaker::InWork {
+ public:
+  InWork(VideoMaker& maker, uint64_t key) HYADES_REQUIRES(state_lock) : maker_(maker), key_(key) {
+    stop_ = &maker_.in_work_[key_];
+    // Nobody stops what begins later.
+    *stop_ = maker_.context_.stop.load();
+  }
+  ~InWork() {
+    const StateLock lock(maker_.context_.mutex);
+    maker_.in_work_.erase(key_);
+  }
+  InWork(const InWork&) = delete;
+  InWork& operator=(const InWork&) = delete;
+
+  const std::atomic<bool>& stop() const { return *stop_; }
+
+ private:
+  VideoMaker& maker_;
+  const uint64_t key_;
+  std::atomic<bool>* stop_ = nullptr;
+};
+
 void VideoMaker::begin(ActiveJob& active) {
   active.making_videos = true;
   jobs_.note(active, v1::LOG_LEVEL_INFO, std::nullopt, {},
              fmt::format("all frames are done; to be made of them: {}", in_words(active.videos)));
-  due_.push_back(active.id);
-  queue_.add(0, [this] { return make_next(); });
+  add(active);
+}
+
+void VideoMaker::add(const ActiveJob& active) {
+  queue_.add(
+      active.stored.id,
+      [this, job = active.id, life = active.life] { return make_of_job(job, life); },
+      active.stored.owner);
+}
+
+void VideoMaker::break_off(uint64_t key) {
+  if (const auto one = in_work_.find(key); one != in_work_.end()) one->second = true;
 }
 
 void VideoMaker::cancel(ActiveJob& active) {
-  std::erase(due_, active.id);
-  if (in_work_ == active.id) stop_ = true;
+  break_off(active.stored.id);
   active.making_videos = false;
   records_.end(active, true, {});
 }
 
-void VideoMaker::stop() {
-  const StateLock lock(context_.mutex);  // or a video that just begins would take it back
-  stop_ = true;
-}
-
-std::string VideoMaker::owner_of(JobId job) const {
-  const ActiveJob* active = jobs_.find(job);
-  return active == nullptr ? std::string() : active->stored.owner;
-}
-
-/// The next one: of the owner whose videos have lately taken least time; of one owner's those of
-/// jobs come first, and then those that were asked for earlier.
-VideoMaker::Next VideoMaker::next() {
-  const auto now = std::chrono::steady_clock::now();
-  Next best;
-  double least = std::numeric_limits<double>::infinity();
-  for (const JobId job : due_) {
-    std::string owner = owner_of(job);
-    const double used = shares_.used(owner, now);
-    if (used >= least) continue;
-    best = {job, nullptr, std::move(owner)};
-    least = used;
-  }
-  for (RequestedVideo& video : asked_) {
-    if (video.state != RequestedVideo::State::waiting) continue;
-    const double used = shares_.used(video.owner, now);
-    if (used >= least) continue;
-    best = {std::nullopt, &video, video.owner};
-    least = used;
-  }
-  return best;
-}
-
-/// False: a job's wait, to be tried again.
-bool VideoMaker::make_next() {
-  JobId job{};
-  RequestedVideo asked;
-  std::string owner;
-  {
-    const StateLock lock(context_.mutex);
-    if (context_.stop) return true;
-    in_work_.reset();
-    const Next what = next();
-    owner = what.owner;
-    stop_ = false;
-    if (what.job) {
-      job = *what.job;
-      std::erase(due_, job);
-    } else if (what.asked != nullptr) {
-      what.asked->state = RequestedVideo::State::making;
-      asked = *what.asked;
-    } else {
-      return true;
-    }
-  }
-  const auto begun = std::chrono::steady_clock::now();
-  bool over = true;
-  if (asked.number == 0) {
-    over = make_of_job(job);
-  } else {
-    make_asked(asked);
-  }
-  const auto now = std::chrono::steady_clock::now();
+void VideoMaker::forget(uint64_t job) {
   const StateLock lock(context_.mutex);
-  shares_.use(owner, std::chrono::duration<double>(now - begun).count(), now);
-  return over;
+  for (RequestedVideo& video : asked_) {
+    if (video.job != job || is_over(video)) continue;
+    break_off(kAsked | video.number);
+    video.state = RequestedVideo::State::failed;
+    video.reason = "the job was deleted";
+  }
 }
 
-bool VideoMaker::make_of_job(JobId job) {
+void VideoMaker::stop() {
+  const StateLock lock(context_.mutex);
+  for (auto& [key, stop] : in_work_) stop = true;
+}
+
+bool VideoMaker::make_of_job(JobId job, uint64_t life) {
   const auto id = static_cast<uint64_t>(job);
   std::vector<core::VideoDesc> videos;
   core::VideoFrames frames;
+  std::optional<InWork> in_work;
   {
     const StateLock lock(context_.mutex);
     const ActiveJob* active = jobs_.find(job);
-    if (active == nullptr || !active->making_videos) return true;
-    in_work_ = job;
-    stop_ = context_.stop.load();
+    if (active == nullptr || active->life != life || !active->making_videos) return true;
+    in_work.emplace(*this, id);
     videos = active->videos;
     frames = active->video_frames;
     frames.folder = context_.output_folder(id);
   }
-  const core::Result<bool> made = make_one(id, videos, frames);
+  const core::Result<bool> made = make_one(id, videos, frames, in_work->stop());
   disk_.measure();
   const StateLock lock(context_.mutex);
   ActiveJob* active = jobs_.find(job);
   // Cancelled, and perhaps recovered since; or the controller ends.
-  if (context_.stop || stop_ || active == nullptr) return true;
+  if (context_.stop || in_work->stop() || active == nullptr) return true;
   if (!made && disk_.level() != DiskLevel::roomy) {
     active->trouble = "its video waits for room on the disk: " + made.error().message;
     active->touch();
-    due_.push_back(job);
     return false;
   }
   active->trouble.clear();
   if (made && *made) {  // after others' turns
-    due_.push_back(job);
-    queue_.add(0, [this] { return make_next(); });
+    add(*active);
     return true;
   }
   active->making_videos = false;
@@ -189,14 +168,16 @@ bool VideoMaker::make_of_job(JobId job) {
 
 /// Makes the first video that is not there yet; whether there are more.
 core::Result<bool> VideoMaker::make_one(uint64_t id, const std::vector<core::VideoDesc>& videos,
-                                        const core::VideoFrames& frames) {
+                                        const core::VideoFrames& frames,
+                                        const std::atomic<bool>& stop) {
   bool one = false;
   for (const core::VideoDesc& video : videos) {
     const auto there = context_.store->output(id, video.file);
     if (!there) return there.error();
     if (!*there && std::exchange(one, true)) return true;
     if (!*there) {
-      const core::Status made = make(id, "video", {video, frames}, {core::video_folder(video)});
+      const core::Status made =
+          make(id, "video", {video, frames}, {core::video_folder(video)}, stop);
       if (!made) return made.error();
     }
     // The pictures are not told any more: what an earlier run left goes too.
@@ -208,11 +189,11 @@ core::Result<bool> VideoMaker::make_one(uint64_t id, const std::vector<core::Vid
 /// Has the video made and stored among the job's outputs, in the place of those that are `gone`
 /// then. `scratch` tells its temporary folder from others of the job.
 core::Status VideoMaker::make(uint64_t id, const std::string& scratch, const VideoTask& task,
-                              const std::vector<std::string>& gone) {
+                              const std::vector<std::string>& gone, const std::atomic<bool>& stop) {
   const int64_t begun_us = core::wall_us();
   const auto files = run_video_maker(
       context_.options.finisher, fmt::format("{}/tmp/{}-{}", context_.options.folder, id, scratch),
-      task, stop_);
+      task, stop);
   if (!files) return files.error();
   core::failpoint("video-made");
   core::Status stored =
@@ -270,7 +251,13 @@ grpc::Status VideoMaker::ask(uint64_t id, const VideoRequest& request, Requested
     if (oldest != asked_.end()) asked_.erase(oldest);
   }
   asked = std::move(*plan);
-  queue_.add(0, [this] { return make_next(); });
+  queue_.add(
+      kAsked | asked.number,
+      [this, number = asked.number] {
+        make_asked(number);
+        return true;
+      },
+      asked.owner);
   return grpc::Status::OK;
 }
 
@@ -284,8 +271,20 @@ grpc::Status VideoMaker::asked(uint64_t id, std::vector<RequestedVideo>& videos)
   return grpc::Status::OK;
 }
 
-void VideoMaker::make_asked(const RequestedVideo& video) {
-  const core::Status done = make(video.job, "asked-video", {video.video, video.frames}, {});
+void VideoMaker::make_asked(uint64_t number) {
+  RequestedVideo video;
+  std::optional<InWork> in_work;
+  {
+    const StateLock lock(context_.mutex);
+    const auto asked = std::find_if(asked_.begin(), asked_.end(),
+                                    [number](const auto& other) { return other.number == number; });
+    if (context_.stop || asked == asked_.end() || is_over(*asked)) return;
+    asked->state = RequestedVideo::State::making;
+    video = *asked;
+    in_work.emplace(*this, kAsked | number);
+  }
+  const core::Status done = make(video.job, fmt::format("asked-video-{}", number),
+                                 {video.video, video.frames}, {}, in_work->stop());
   disk_.measure();
   asked_is_over(video, done);
 }
@@ -302,7 +301,7 @@ void VideoMaker::asked_is_over(const RequestedVideo& video, const core::Status& 
   {
     const StateLock lock(context_.mutex);
     for (RequestedVideo& kept : asked_) {
-      if (kept.number != video.number) continue;
+      if (kept.number != video.number || is_over(kept)) continue;
       kept.state = done ? RequestedVideo::State::done : RequestedVideo::State::failed;
       if (!done) kept.reason = farm::wire_text(done.error().message);
     }

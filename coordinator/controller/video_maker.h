@@ -3,7 +3,7 @@
 #include <atomic>
 #include <cstdint>
 #include <deque>
-#include <optional>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -14,22 +14,22 @@
 #include "coordinator/controller/requested_video.h"
 #include "coordinator/controller/timeline.h"
 #include "coordinator/finisher/video_task.h"
-#include "farm/fair_shares.h"
+#include "farm/retry_queue.h"
 
 namespace hyades::coordinator {
 
 class DiskWatch;
 class JobRecords;
 
-/// Makes videos of finished frames, one after the other and beside all else, as that takes minutes:
-/// a job's own before it ends, and those that somebody asks for. Owners of jobs take turns by the
-/// time that theirs take. Thread-safe.
+/// Makes videos of finished frames beside all else, as that takes minutes: a job's own before it
+/// ends, and those that somebody asks for. Of each owner one after the other; owners take turns by
+/// the time that theirs take. Thread-safe.
 class VideoMaker {
  public:
   VideoMaker(ControllerContext& context, JobTable& jobs, JobRecords& records, DiskWatch& disk,
              Timelines& timelines)
       : context_(context), jobs_(jobs), records_(records), disk_(disk), timelines_(timelines) {}
-  /// Breaks off the video in work.
+  /// Breaks off the videos in work.
   void stop() HYADES_EXCLUDES(state_lock);
   /// Waits for what is in work; to be called after stop().
   void end() { queue_.end(); }
@@ -48,25 +48,23 @@ class VideoMaker {
   void begin(ActiveJob& active) HYADES_REQUIRES(state_lock);
   /// The job, whose videos are being made or wait, ends without them.
   void cancel(ActiveJob& active) HYADES_REQUIRES(state_lock);
+  /// Nobody wants the videos that were asked for of the job, which is deleted.
+  void forget(uint64_t job) HYADES_EXCLUDES(state_lock);
   /// Whether a video of the job's own is in work.
-  bool is_making(JobId job) const HYADES_REQUIRES(state_lock) { return in_work_ == job; }
+  bool is_making(JobId job) const HYADES_REQUIRES(state_lock) {
+    return in_work_.contains(static_cast<uint64_t>(job));
+  }
 
  private:
-  bool make_next() HYADES_EXCLUDES(state_lock);
-  bool make_of_job(JobId job) HYADES_EXCLUDES(state_lock);
-  /// A job whose videos are due, or one that was asked for; neither: none waits.
-  struct Next {
-    std::optional<JobId> job{};
-    RequestedVideo* asked = nullptr;
-    std::string owner{};
-  };
-  Next next() HYADES_REQUIRES(state_lock);
-  std::string owner_of(JobId job) const HYADES_REQUIRES(state_lock);
+  class InWork;
+  void add(const ActiveJob& active) HYADES_REQUIRES(state_lock);
+  void break_off(uint64_t key) HYADES_REQUIRES(state_lock);
+  bool make_of_job(JobId job, uint64_t life) HYADES_EXCLUDES(state_lock);
   core::Result<bool> make_one(uint64_t id, const std::vector<core::VideoDesc>& videos,
-                              const core::VideoFrames& frames);
+                              const core::VideoFrames& frames, const std::atomic<bool>& stop);
   core::Status make(uint64_t id, const std::string& scratch, const VideoTask& task,
-                    const std::vector<std::string>& gone);
-  void make_asked(const RequestedVideo& video) HYADES_EXCLUDES(state_lock);
+                    const std::vector<std::string>& gone, const std::atomic<bool>& stop);
+  void make_asked(uint64_t number) HYADES_EXCLUDES(state_lock);
   void asked_is_over(const RequestedVideo& video, const core::Status& done)
       HYADES_EXCLUDES(state_lock);
 
@@ -75,14 +73,13 @@ class VideoMaker {
   JobRecords& records_;
   DiskWatch& disk_;
   Timelines& timelines_;
-  std::deque<JobId> due_ HYADES_GUARDED_BY(state_lock);
-  std::optional<JobId> in_work_ HYADES_GUARDED_BY(state_lock);
+  /// What ends the videos in work, by their tasks' keys.
+  std::map<uint64_t, std::atomic<bool>> in_work_ HYADES_GUARDED_BY(state_lock);
   /// The oldest first; those that are over too.
   std::deque<RequestedVideo> asked_ HYADES_GUARDED_BY(state_lock);
   uint64_t next_asked_ HYADES_GUARDED_BY(state_lock) = 1;
-  farm::FairShares shares_ HYADES_GUARDED_BY(state_lock);  ///< seconds of making, of owners
-  std::atomic<bool> stop_{false};                          ///< ends the video in work
-  farm::RetryQueue queue_{1};
+  /// By job, and by what was asked for. So many owners' videos are made at once.
+  farm::RetryQueue queue_{4};
 };
 
 }  // namespace hyades::coordinator

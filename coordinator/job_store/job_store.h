@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -172,8 +173,10 @@ class JobStore {
   /// Replaces what is known of the frame, and of its outputs.
   virtual core::Status frame_over(uint64_t job, const StoredFrame& frame,
                                   const std::vector<StoredOutput>& outputs) = 0;
-  /// The frame is to be rendered (again).
-  virtual core::Status forget_frame(uint64_t job, int32_t frame) = 0;
+  /// The frames are to be rendered (again). All of it at once, or nothing.
+  virtual core::Status forget_frames(uint64_t job, std::span<const int32_t> frames) = 0;
+  /// So are all that have failed, however many.
+  virtual core::Status forget_failed_frames(uint64_t job) = 0;
   /// Forgets the job's outputs whose path is one of `gone`, or lies in that folder, and adds
   /// `made`. All of it at once, or nothing.
   virtual core::Status change_outputs(uint64_t job, const std::vector<std::string>& gone,

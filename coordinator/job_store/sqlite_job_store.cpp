@@ -1,8 +1,10 @@
 #include <algorithm>
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -235,8 +237,29 @@ class SqliteJobStore final : public JobStore {
     });
   }
 
-  core::Status forget_frame(uint64_t job, int32_t frame) override {
-    return at_once([&]() HYADES_REQUIRES(mutex_) { return delete_frame(job, frame); });
+  core::Status forget_frames(uint64_t job, std::span<const int32_t> frames) override {
+    return at_once([&]() HYADES_REQUIRES(mutex_) {
+      core::Status done;
+      for (size_t i = 0; done && i < frames.size(); ++i) done = delete_frame(job, frames[i]);
+      return done;
+    });
+  }
+
+  core::Status forget_failed_frames(uint64_t job) override {
+    return at_once([&]() HYADES_REQUIRES(mutex_) {
+      core::Status done;
+      for (const char* table : {"parts", "outputs"}) {
+        if (!done) return done;
+        done = query(fmt::format("DELETE FROM {} WHERE job = ?1 AND frame IN (SELECT frame FROM "
+                                 "frames WHERE job = ?1 AND done = 0)",
+                                 table)
+                         .c_str())
+                   .bind(number(job))
+                   .run();
+      }
+      if (!done) return done;
+      return query("DELETE FROM frames WHERE job = ? AND done = 0").bind(number(job)).run();
+    });
   }
 
   using JobStore::frames;

@@ -180,9 +180,14 @@ void FrameLifecycle::restart(ScheduledJob& job, FrameSlot& slot) {
 }
 
 void FrameLifecycle::bring_back(ScheduledJob& job, FrameSlot& slot) {
+  if (slot.phase == FramePhase::failed) {
+    --job.frames_failed;
+    slot.phase = FramePhase::returning;
+    records_.persist(FrameRestartedRecord{job.id, slot.frame});
+    return;
+  }
   if (slot.phase == FramePhase::waiting) --job.waiting;
   if (slot.phase == FramePhase::done) --job.frames_done;
-  if (slot.phase == FramePhase::failed) --job.frames_failed;
   job.in_flight.push_back(job.index_of(slot));
   restart(job, slot);
 }

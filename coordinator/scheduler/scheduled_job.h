@@ -30,6 +30,7 @@ enum class FramePhase : uint8_t {
   finishing,   ///< complete; FinishFrame was said
   closing,     ///< finished or failed; waits for that to be durable
   restarting,  ///< begins again; waits for that to be durable
+  returning,   ///< had failed and begins again; likewise, but that very many may be at once
   done,
   failed,
 };
@@ -72,12 +73,14 @@ struct FrameSlot {
   uint64_t threads() const { return assigned_threads + prefetching_threads; }
   /// Whether it has been begun with, or begins again, and that it is over is not durable yet.
   bool in_flight() const {
-    return phase != FramePhase::waiting && phase != FramePhase::done && phase != FramePhase::failed;
+    return phase != FramePhase::waiting && phase != FramePhase::returning &&
+           phase != FramePhase::done && phase != FramePhase::failed;
   }
   /// Whether it takes no films any more.
   bool over() const {
     return phase == FramePhase::closing || phase == FramePhase::restarting ||
-           phase == FramePhase::done || phase == FramePhase::failed;
+           phase == FramePhase::returning || phase == FramePhase::done ||
+           phase == FramePhase::failed;
   }
 };
 

@@ -1,10 +1,13 @@
 // Jobs whose outputs take minutes to make.
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <csignal>
 #include <filesystem>
 #include <fstream>
+#include <optional>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "tests/coordinator/services/farm_world.h"
@@ -12,14 +15,15 @@
 namespace hyades::coordinator {
 namespace {
 
-/// A farm whose finisher does not end with frames of the jobs 1 and 2.
+/// A farm whose finisher does not end with frames of the jobs 1 and 2 before go() was called.
 class SlowFinisher : public ::testing::Test {
  protected:
   void SetUp() override {
     const std::string program = world_.folder.file("finisher");
     std::ofstream(program) << "#!/bin/sh\n"
                            << "case \"${2##*/}\" in\n"
-                           << "  1-*|2-*) echo $$ >>" << begun_ << "; exec sleep 300;;\n"
+                           << "  1-*|2-*) echo $$ >>" << begun_ << "; until [ -e " << go_
+                           << " ]; do sleep 0.05; done;;\n"
                            << "esac\n"
                            << "exec " << world_.options.finisher << " \"$@\"\n";
     std::filesystem::permissions(program, std::filesystem::perms::owner_all);
@@ -44,12 +48,14 @@ class SlowFinisher : public ::testing::Test {
     for (pid_t one; file >> one;) finishers.push_back(one);
     return finishers;
   }
+  void go() const { std::ofstream(go_) << "go"; }
   static bool is_alive(pid_t process) { return ::kill(process, 0) == 0; }
 
   FarmWorld world_;
 
  private:
   const std::string begun_ = world_.folder.file("begun");
+  const std::string go_ = world_.folder.file("go");
   std::optional<ScriptedWorker> worker_;
 };
 
@@ -65,6 +71,26 @@ TEST_F(SlowFinisher, EndsWithItsJob) {
   EXPECT_TRUE(eventually([&] { return !is_alive(first); }));
   EXPECT_TRUE(eventually([&] { return begun().size() == 2; })) << "the next one's turn has come";
   EXPECT_EQ(world_.get(1).job().state(), v1::JOB_STATE_CANCELLED);
+}
+
+/// Of a job that is cancelled and retried nothing waits from before: neither films nor work.
+TEST_F(SlowFinisher, KeepsNothingOfJobsThatWereCancelled) {
+  const auto finishing = [&] {
+    const v1::GetJobResponse now = world_.get(2);
+    return now.frames_size() > 0 && now.frames(0).state() == v1::FRAME_STATE_FINISHING;
+  };
+  for (int round = 0; round < 3; ++round) {
+    ASSERT_TRUE(eventually(finishing));
+    v1::JobResponse now;
+    ASSERT_TRUE(world_.jobs->Cancel(world_.context().get(), about(2), &now).ok());
+    ASSERT_TRUE(world_.jobs->Retry(world_.context().get(), about(2), &now).ok());
+  }
+  ASSERT_TRUE(eventually(finishing));
+  go();
+  EXPECT_TRUE(world_.wait_for(1, v1::JOB_STATE_DONE));
+  EXPECT_TRUE(world_.wait_for(2, v1::JOB_STATE_DONE));
+  std::this_thread::sleep_for(std::chrono::milliseconds(500));
+  EXPECT_EQ(begun().size(), 2U) << "each frame is finished once";
 }
 
 }  // namespace

@@ -210,6 +210,26 @@ TEST(JobStore, NoLineIsOverwrittenWhereNoneHadToGo) {
   EXPECT_EQ(lines->at(0).text, "line 0");
 }
 
+TEST(JobStore, AllFailedFramesAreForgottenTogether) {
+  const test::TempFolder folder;
+  auto store = open(folder.file("state.db"));
+  for (const char* owner : {"ada", "eve"}) {
+    ASSERT_TRUE(store->add_job(some_job("", owner)).ok());
+  }
+  for (uint64_t job : {1, 2}) {
+    for (int32_t frame = 1; frame <= 6; ++frame) {
+      StoredFrame over{frame, frame % 2 == 0, "", "class", 0, {"worker"}, 1};
+      ASSERT_TRUE(store->frame_over(job, over, {}).ok());
+    }
+  }
+  ASSERT_TRUE(store->forget_failed_frames(1).ok());
+  EXPECT_EQ(store->frames(1)->size(), 3U);
+  for (const StoredFrame& frame : *store->frames(1)) EXPECT_TRUE(frame.done);
+  EXPECT_EQ(store->frames(2)->size(), 6U) << "another job's";
+  ASSERT_TRUE(store->forget_frames(2, std::vector<int32_t>{1, 2}).ok());
+  EXPECT_EQ(store->frames(2)->size(), 4U);
+}
+
 TEST(JobStore, KeepsQuarantinesUntilTheyEnd) {
   const test::TempFolder folder;
   const std::string path = folder.file("state.db");
@@ -274,7 +294,7 @@ TEST_F(DivergentWorkers, MakeWhatTheyHadAPartInDoubtful) {
   EXPECT_EQ(store_->quarantines()->at(0).worker, "divergent-worker");
   EXPECT_TRUE(store_->frames(1)->at(1).doubtful);
   done(1, 4, 20, {"good-worker"});  // again
-  ASSERT_TRUE(store_->forget_frame(1, 5).ok());
+  ASSERT_TRUE(store_->forget_frames(1, std::vector<int32_t>{5}).ok());
   EXPECT_TRUE(store_->doubtful(1, 10)->empty());
   EXPECT_TRUE(mark_divergent(1, 0).empty());
 }

@@ -1,4 +1,6 @@
 // Jobs and frames, from opening to their end.
+#include <ctime>
+
 #include "tests/coordinator/scheduler/scheduler_testing.h"
 
 namespace hyades::coordinator {
@@ -261,6 +263,31 @@ TEST(Scheduler, JobsWithoutPixelsOrFramesEndToo) {
   b.tell(FinishDone{JobId{2}, b.only<FinishFrame>().frame});
   b.tell(Persisted{b.only<Persist>().id});
   EXPECT_EQ(b.only<JobEnded>().done, 1U);
+}
+
+/// What each frame costs does not grow with how many there are: 200,000 would take minutes.
+TEST(Scheduler, VeryManyFailedFramesBeginAgain) {
+  SchedulerBench bench;
+  JobPlan plan;
+  plan.region = {0, 0, 32, 32};
+  RestoredJob restored;
+  for (int32_t frame = 0; frame < 200'000; ++frame) {
+    plan.frames.push_back(frame);
+    if (frame > 0) restored.failed.push_back({frame, "broken"});
+  }
+  const auto begin = std::clock();
+  bench.scheduler.handle(JobAdded{kJob, plan, restored}, bench.now);
+  const std::vector<Action> said = bench.scheduler.handle(FramesRetried{kJob}, bench.now);
+  size_t restarted = 0;
+  for (const Action& action : said) {
+    const auto* persist = std::get_if<Persist>(&action);
+    if (persist == nullptr) continue;
+    ++restarted;
+    bench.scheduler.handle(Persisted{persist->id}, bench.now);
+  }
+  EXPECT_EQ(restarted, 199'999U);
+  EXPECT_LT(static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC, 20.0);
+  EXPECT_TRUE(bench.scheduler.knows(kJob));
 }
 
 TEST(Scheduler, PausedJobsLeaseNothingAndTakeWhatComes) {

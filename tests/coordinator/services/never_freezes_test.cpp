@@ -5,6 +5,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <atomic>
 #include <filesystem>
 #include <string>
@@ -246,6 +247,29 @@ TEST_F(LongRecovery, AfterAStartHoldsNobodyUp) {
   world.stop();
   world.start();
   expect_others_served([&] { return world.get(job).job().reason().empty(); });
+}
+
+/// What others' jobs need of the background is done beside it.
+TEST_F(LongRecovery, OfManyHoldsUpNobodysNewJob) {
+  std::vector<uint64_t> held;
+  for (const char* owner : {"eve", "dan", "eve", "dan", "eve", "dan"}) {
+    v1::SubmitRequest request = FarmWorld::request(text);
+    request.set_owner(owner);
+    request.set_idempotency_key("0123456789abcdef" + std::to_string(held.size()));
+    v1::SubmitResponse response;
+    const auto context = world.context(120s);
+    ASSERT_TRUE(world.jobs->Submit(context.get(), request, &response).ok());
+    v1::JobResponse now;
+    held.push_back(response.job().id());
+    ASSERT_TRUE(world.jobs->Pause(world.context().get(), about(held.back()), &now).ok());
+  }
+  ASSERT_TRUE(cancel(job).ok());
+  world.stop();
+  world.start();
+  const ScriptedWorker worker(world.address, world.script());
+  EXPECT_TRUE(world.wait_for(world.submit(1), v1::JOB_STATE_DONE));
+  const auto waits = [&](uint64_t id) { return !world.get(id).job().reason().empty(); };
+  EXPECT_TRUE(std::any_of(held.begin(), held.end(), waits)) << "it came after all of them";
 }
 
 TEST_F(NeverFreezes, WhileTheJobStoreDoesNotAnswer) {

@@ -115,8 +115,11 @@ class TroubledStore final : public JobStore {
                               const std::vector<StoredOutput>& made) override {
     return written([&] { return store_->change_outputs(job, gone, made); });
   }
-  core::Status forget_frame(uint64_t job, int32_t frame) override {
-    return written([&] { return store_->forget_frame(job, frame); });
+  core::Status forget_frames(uint64_t job, std::span<const int32_t> frames) override {
+    return written([&] { return store_->forget_frames(job, frames); });
+  }
+  core::Status forget_failed_frames(uint64_t job) override {
+    return written([&] { return store_->forget_failed_frames(job); });
   }
   using JobStore::frames;
   core::Result<std::vector<StoredFrame>> frames(uint64_t job, std::optional<int32_t> after,
