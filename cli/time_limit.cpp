@@ -1,7 +1,9 @@
 #include "cli/time_limit.h"
 
 #include <algorithm>
+#include <cstddef>
 #include <fstream>
+#include <ios>
 #include <set>
 #include <span>
 #include <utility>
@@ -30,11 +32,17 @@ std::string TimeLimit::command() const {
 }
 
 uint32_t TimeLimit::chosen_before() const {
-  std::ifstream file(file_);
-  std::string command, chosen;
-  if (options_.restart || !std::getline(file, command) || !std::getline(file, chosen)) return 0;
-  const auto samples = parse_samples(chosen);
-  return command == this->command() && samples && !samples->range ? samples->of : 0;
+  if (options_.restart) return 0;
+  // The folder may be somebody else's: no more is read than is looked for.
+  const std::string begin = command() + "\n";
+  std::string noted(begin.size() + 10, '\0');
+  std::ifstream file(file_, std::ios::binary);
+  file.read(noted.data(), static_cast<std::streamsize>(noted.size()));
+  noted.resize(static_cast<size_t>(file.gcount()));
+  if (!noted.starts_with(begin) || !noted.ends_with('\n')) return 0;
+  noted.pop_back();
+  const auto samples = parse_samples(noted.substr(begin.size()));
+  return samples && !samples->range ? samples->of : 0;
 }
 
 core::Result<uint32_t> TimeLimit::samples(JobFrames& frames, const std::vector<int32_t>& numbers) {

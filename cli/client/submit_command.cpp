@@ -191,13 +191,10 @@ void tell_files_elsewhere(const farm::JobPackage& package, const std::string& jo
     elsewhere.push_back(failed ? file.reference : led.string());
   }
   if (elsewhere.empty()) return;
-  constexpr size_t kMostNamed = 5;
-  const size_t named = std::min(elsewhere.size(), kMostNamed);
   std::string text = fmt::format("sends {} from outside of the job's folder:",
                                  core::counted(elsewhere.size(), "file"));
-  for (size_t i = 0; i < named; ++i) text += (i == 0 ? " " : ", ") + elsewhere[i];
-  if (named < elsewhere.size()) text += fmt::format(" and {} more", elsewhere.size() - named);
-  std::fprintf(stderr, "%s\n", core::printable(text).c_str());
+  for (const std::string& file : elsewhere) text += "\n  " + file;
+  std::fprintf(stderr, "%s\n", core::printable_lines(text).c_str());
 }
 
 /// Whoever submits hears in time that their token ends. An older coordinator does not say so.

@@ -102,7 +102,7 @@ def stays_in_folder(folder: Path, path: Path) -> bool:
     except (FileNotFoundError, NotADirectoryError):
         # From here on it is made, without links. A link to what is not there cannot be made a folder.
         return ".." not in path.relative_to(folder).parts
-    except OSError:
+    except (OSError, ValueError):
         return False
     return True
 

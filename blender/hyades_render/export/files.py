@@ -15,6 +15,6 @@ def may_be_sent(path: str, ends: Set[str]) -> bool:
     """
     try:
         led = led_to(path)
-    except OSError:
+    except (OSError, ValueError):
         return False
     return led.is_file() and all(os.path.splitext(name)[1].lower() in ends for name in (path, led))
