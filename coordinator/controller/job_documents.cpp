@@ -122,7 +122,7 @@ bool JobDocuments::begin_turn(Time give_up, const std::string& owner) {
   }
   const uint64_t number = next_waiting_++;
   waiting_.push_back({number, owner});
-  const auto leave = [&] {
+  const auto leave = [&]() HYADES_REQUIRES(mutex_) {
     std::erase_if(waiting_, [&](const Waiting& other) { return other.number == number; });
   };
   for (;;) {
@@ -144,9 +144,10 @@ bool JobDocuments::begin_turn(Time give_up, const std::string& owner) {
 /// Of those who wait, the first for whose owner least was read lately.
 uint64_t JobDocuments::next_reader(Time now) const {
   const auto next =
-      std::min_element(waiting_.begin(), waiting_.end(), [&](const Waiting& a, const Waiting& b) {
-        return shares_.used(a.owner, now) < shares_.used(b.owner, now);
-      });
+      std::min_element(waiting_.begin(), waiting_.end(),
+                       [&](const Waiting& a, const Waiting& b) HYADES_REQUIRES(mutex_) {
+                         return shares_.used(a.owner, now) < shares_.used(b.owner, now);
+                       });
   return next->number;
 }
 

@@ -10,12 +10,12 @@
 namespace hyades::coordinator {
 namespace {
 
-constexpr size_t kMostWaiting = 2000;
+constexpr size_t kMostLinesWaiting = 2000;
 
 }  // namespace
 
 void LogBuffer::add(StoredLine line) {
-  if (lines_.size() < kMostWaiting) {
+  if (lines_.size() < kMostLinesWaiting) {
     lines_.push_back(std::move(line));
   } else {
     ++dropped_;
@@ -44,8 +44,8 @@ void LogBuffer::not_stored(std::vector<StoredLine> taken, TimePoint again) {
   taken.insert(taken.end(), std::make_move_iterator(lines_.begin()),
                std::make_move_iterator(lines_.end()));
   lines_ = std::move(taken);
-  if (lines_.size() <= kMostWaiting) return;
-  const size_t over = lines_.size() - kMostWaiting;
+  if (lines_.size() <= kMostLinesWaiting) return;
+  const size_t over = lines_.size() - kMostLinesWaiting;
   lines_.erase(lines_.begin(), lines_.begin() + static_cast<std::ptrdiff_t>(over));
   dropped_ += over;
 }
