@@ -38,7 +38,7 @@ bool keeps_clear(const Vec3& place, const std::vector<Vec3>& others, float dista
 
 std::string lanterns() {
   constexpr float kSide = 8.0F, kTop = 7.0F, kClear = 1.1F;
-  const char* const colors[] = {"1750K", "1850K", "2000K", "[1, 0.28, 0.1]"};
+  const char* const papers[] = {"paper_1", "paper_2", "paper_3", "paper_4"};
   Numbers numbers(2026);
   std::vector<Vec3> places;
   while (places.size() < 100) {
@@ -58,7 +58,7 @@ std::string lanterns() {
         "transform: [{{rotate_x: {:.0f}}}, {{rotate_z: {:.0f}}}], emit: {{color: {}, power: "
         "{:.1f}}}}}\n",
         i + 1, p.x, p.y + 0.15F, p.z, numbers.between(-9.0F, 9.0F), numbers.between(-9.0F, 9.0F),
-        colors[i * 7 % 4], numbers.between(5.0F, 11.0F));
+        papers[i * 7 % 4], numbers.between(5.0F, 11.0F));
   }
   return text;
 }

@@ -11,10 +11,10 @@ local objects = {
 for i = 1, count do
   -- A ring is a row of short rods around a circle.
   local radius = 0.26 + 0.31 * i
-  local rods, parts = 48, {}
+  local rods, parts = 192, {}
   for k = 1, rods do
     local angle = 360 * k / rods
-    parts[string.format("rod_%02d", k)] = {
+    parts[string.format("rod_%03d", k)] = {
       shape = "box",
       size = {2.02 * radius * math.tan(math.pi / rods), 0.04, 0.14},
       transform = {{translate = {0, 0, radius}}, {rotate_y = angle}},
@@ -33,7 +33,7 @@ return {
   film = {size = {640, 400}},
   sampling = {samples = 512, seed = 5},
   integrator = {type = "bdpt", max_depth = 3},
-  camera = {look_from = {0.6, 1.7, 8.2}, look_at = {0.1, 2.0, 0}, fov = 37},
+  camera = {look_from = {0.6, 1.7, 8.2}, look_at = {0.3, 1.6, 0}, fov = 33},
   media = {fog = {scattering = {0.036, 0.039, 0.044}, absorption = 0.003, g = 0.45}},
   atmosphere = "fog",
   materials = {
