@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -135,9 +136,10 @@ struct GltfImage {
 };
 
 /// Vertices or triangles of meshes and their targets that are made of a file may be this many per
-/// byte of its buffers: some accessors are shared, or sparse, but beyond it a file is not meant
-/// seriously.
-inline constexpr size_t kMostElementsPerByte = 16;
+/// byte of its buffers, as some accessors are shared, or sparse; beyond the first millions fewer.
+/// Then a file is not meant seriously.
+inline constexpr uint64_t kMostElementsPerByte = 64, kMostOfManyPerByte = 16;
+inline constexpr uint64_t kManyElements = uint64_t{1} << 24U;
 
 struct GltfModel {
   std::string file;  ///< for messages
@@ -159,7 +161,9 @@ struct GltfModel {
 
   /// Whether so many vertices or triangles are too many for what the file holds.
   bool is_too_much(uint64_t elements) const {
-    return elements > kMostElementsPerByte * (uint64_t{buffer_bytes} + 4096);
+    const uint64_t bytes = uint64_t{buffer_bytes} + 1024;
+    return elements >
+           std::min(kMostElementsPerByte * bytes, kManyElements + kMostOfManyPerByte * bytes);
   }
 };
 
