@@ -58,38 +58,12 @@ void FrameFinisher::add(ActiveJob& active, const FinishFrame& asked,
       active.stored.owner);
 }
 
-void FrameFinisher::cancel(JobId job) {
-  if (const auto one = in_work_.find(job); one != in_work_.end()) one->second = true;
-}
+void FrameFinisher::cancel(JobId job) { in_work_.break_off(static_cast<uint64_t>(job)); }
 
 void FrameFinisher::stop() {
   const StateLock lock(context_.mutex);
-  for (auto& [job, stop] : in_work_) stop = true;
+  in_work_.break_off_all();
 }
-
-/// What of a job is in work, as long as this is there.
-class FrameFinisher::InWork {
- public:
-  InWork(FrameFinisher& finisher, JobId job) : finisher_(finisher), job_(job) {
-    const StateLock lock(finisher_.context_.mutex);
-    stop_ = &finisher_.in_work_[job_];
-    // Nobody stops what begins later.
-    *stop_ = finisher_.context_.stop.load();
-  }
-  ~InWork() {
-    const StateLock lock(finisher_.context_.mutex);
-    finisher_.in_work_.erase(job_);
-  }
-  InWork(const InWork&) = delete;
-  InWork& operator=(const InWork&) = delete;
-
-  const std::atomic<bool>& stop() const { return *stop_; }
-
- private:
-  FrameFinisher& finisher_;
-  const JobId job_;
-  std::atomic<bool>* stop_ = nullptr;
-};
 
 /// Whether the scheduler has heard what became of it. What fails is told with the next try, so that
 /// frames which fail at once keep nobody busy.
@@ -100,7 +74,11 @@ bool FrameFinisher::finish(Completed& completed) {
     turn.tell(FinishFailed{completed.job, completed.frame, *completed.failure});
     return true;
   }
-  const InWork in_work(*this, completed.job);
+  std::optional<TasksInWork::Task> in_work;
+  {
+    const StateLock lock(context_.mutex);
+    in_work.emplace(in_work_, static_cast<uint64_t>(completed.job));
+  }
   std::string spec, owner;
   StoredFrame over;
   // Not in the tasks that wait: what a job has in memory goes with it.
@@ -114,12 +92,12 @@ bool FrameFinisher::finish(Completed& completed) {
   document.reset();  // making the outputs takes its time
   bool written = false;
   const core::Status done =
-      task ? make_outputs(completed, *film, *task, over, in_work.stop(), written)
+      task ? make_outputs(completed, *film, *task, over, in_work->stop(), written)
            : core::Status(task.error());
   // What is written and cannot be stored is no fault of the frame's, nor is a full disk.
   const bool waits = !done && (written || disk_.is_short_for(*film));
   Turn turn(dispatcher_);
-  if (in_work.stop() && !written) return true;
+  if (in_work->stop() && !written) return true;
   if (waits) {
     ActiveJob* still = jobs_.find(completed.job);
     if (still == nullptr) return true;

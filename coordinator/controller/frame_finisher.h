@@ -2,7 +2,6 @@
 
 #include <atomic>
 #include <cstdint>
-#include <map>
 #include <memory>
 #include <string>
 #include <vector>
@@ -10,6 +9,7 @@
 #include "coordinator/controller/controller_context.h"
 #include "coordinator/controller/dispatcher.h"
 #include "coordinator/controller/job_table.h"
+#include "coordinator/controller/tasks_in_work.h"
 #include "coordinator/controller/timeline.h"
 
 namespace hyades::coordinator {
@@ -41,7 +41,6 @@ class FrameFinisher {
   void cancel(JobId job) HYADES_REQUIRES(state_lock);
 
  private:
-  class InWork;
   struct Completed;
   bool finish(Completed& completed) HYADES_EXCLUDES(state_lock);
   std::shared_ptr<const core::Film> begin(Completed& completed, std::string& spec,
@@ -58,8 +57,7 @@ class FrameFinisher {
   JobTable& jobs_;
   DiskWatch& disk_;
   Timelines& timelines_;
-  /// Of the jobs in work, what ends their finisher.
-  std::map<JobId, std::atomic<bool>> in_work_ HYADES_GUARDED_BY(state_lock);
+  TasksInWork in_work_{context_};  ///< by job
   /// By job. So many owners' frames are finished at once: each takes the memory of its film anew.
   farm::RetryQueue queue_{4};
 };

@@ -59,29 +59,6 @@ std::string in_words(const std::vector<core::VideoDesc>& videos) {
 
 }  // namespace
 
-/// A video in work, as long as this is there.
-class VideoMaker::InWork {
- public:
-  InWork(VideoMaker& maker, uint64_t key) HYADES_REQUIRES(state_lock) : maker_(maker), key_(key) {
-    stop_ = &maker_.in_work_[key_];
-    // Nobody stops what begins later.
-    *stop_ = maker_.context_.stop.load();
-  }
-  ~InWork() {
-    const StateLock lock(maker_.context_.mutex);
-    maker_.in_work_.erase(key_);
-  }
-  InWork(const InWork&) = delete;
-  InWork& operator=(const InWork&) = delete;
-
-  const std::atomic<bool>& stop() const { return *stop_; }
-
- private:
-  VideoMaker& maker_;
-  const uint64_t key_;
-  std::atomic<bool>* stop_ = nullptr;
-};
-
 void VideoMaker::begin(ActiveJob& active) {
   active.making_videos = true;
   jobs_.note(active, v1::LOG_LEVEL_INFO, std::nullopt, {},
@@ -96,12 +73,8 @@ void VideoMaker::add(const ActiveJob& active) {
       active.stored.owner);
 }
 
-void VideoMaker::break_off(uint64_t key) {
-  if (const auto one = in_work_.find(key); one != in_work_.end()) one->second = true;
-}
-
 void VideoMaker::cancel(ActiveJob& active) {
-  break_off(active.stored.id);
+  in_work_.break_off(active.stored.id);
   active.making_videos = false;
   records_.end(active, true, {});
 }
@@ -110,7 +83,7 @@ void VideoMaker::forget(uint64_t job) {
   const StateLock lock(context_.mutex);
   for (RequestedVideo& video : asked_) {
     if (video.job != job || is_over(video)) continue;
-    break_off(kAsked | video.number);
+    in_work_.break_off(kAsked | video.number);
     video.state = RequestedVideo::State::failed;
     video.reason = "the job was deleted";
   }
@@ -118,19 +91,19 @@ void VideoMaker::forget(uint64_t job) {
 
 void VideoMaker::stop() {
   const StateLock lock(context_.mutex);
-  for (auto& [key, stop] : in_work_) stop = true;
+  in_work_.break_off_all();
 }
 
 bool VideoMaker::make_of_job(JobId job, uint64_t life) {
   const auto id = static_cast<uint64_t>(job);
   std::vector<core::VideoDesc> videos;
   core::VideoFrames frames;
-  std::optional<InWork> in_work;
+  std::optional<TasksInWork::Task> in_work;
   {
     const StateLock lock(context_.mutex);
     const ActiveJob* active = jobs_.find(job);
     if (active == nullptr || active->life != life || !active->making_videos) return true;
-    in_work.emplace(*this, id);
+    in_work.emplace(in_work_, id);
     videos = active->videos;
     frames = active->video_frames;
     frames.folder = context_.output_folder(id);
@@ -273,7 +246,7 @@ grpc::Status VideoMaker::asked(uint64_t id, std::vector<RequestedVideo>& videos)
 
 void VideoMaker::make_asked(uint64_t number) {
   RequestedVideo video;
-  std::optional<InWork> in_work;
+  std::optional<TasksInWork::Task> in_work;
   {
     const StateLock lock(context_.mutex);
     const auto asked = std::find_if(asked_.begin(), asked_.end(),
@@ -281,7 +254,7 @@ void VideoMaker::make_asked(uint64_t number) {
     if (context_.stop || asked == asked_.end() || is_over(*asked)) return;
     asked->state = RequestedVideo::State::making;
     video = *asked;
-    in_work.emplace(*this, kAsked | number);
+    in_work.emplace(in_work_, kAsked | number);
   }
   const core::Status done = make(video.job, fmt::format("asked-video-{}", number),
                                  {video.video, video.frames}, {}, in_work->stop());

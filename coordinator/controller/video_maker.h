@@ -3,7 +3,6 @@
 #include <atomic>
 #include <cstdint>
 #include <deque>
-#include <map>
 #include <string>
 #include <vector>
 
@@ -12,6 +11,7 @@
 #include "coordinator/controller/controller_context.h"
 #include "coordinator/controller/job_table.h"
 #include "coordinator/controller/requested_video.h"
+#include "coordinator/controller/tasks_in_work.h"
 #include "coordinator/controller/timeline.h"
 #include "coordinator/finisher/video_task.h"
 #include "farm/retry_queue.h"
@@ -56,9 +56,7 @@ class VideoMaker {
   }
 
  private:
-  class InWork;
   void add(const ActiveJob& active) HYADES_REQUIRES(state_lock);
-  void break_off(uint64_t key) HYADES_REQUIRES(state_lock);
   bool make_of_job(JobId job, uint64_t life) HYADES_EXCLUDES(state_lock);
   core::Result<bool> make_one(uint64_t id, const std::vector<core::VideoDesc>& videos,
                               const core::VideoFrames& frames, const std::atomic<bool>& stop);
@@ -73,8 +71,7 @@ class VideoMaker {
   JobRecords& records_;
   DiskWatch& disk_;
   Timelines& timelines_;
-  /// What ends the videos in work, by their tasks' keys.
-  std::map<uint64_t, std::atomic<bool>> in_work_ HYADES_GUARDED_BY(state_lock);
+  TasksInWork in_work_{context_};  ///< by the keys of their tasks
   /// The oldest first; those that are over too.
   std::deque<RequestedVideo> asked_ HYADES_GUARDED_BY(state_lock);
   uint64_t next_asked_ HYADES_GUARDED_BY(state_lock) = 1;
