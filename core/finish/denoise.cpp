@@ -188,11 +188,12 @@ std::vector<Rgb> filter(GuidedPicture picture, float samples, int threads) {
   const std::vector<Rgb> guess = guessed_variance(picture);
   if (!known) picture.variance = guess;
   damp_fireflies(picture);
-  picture.variance =
-      blurred(picture.variance, picture.width, picture.height, variance_radius(samples));
-  // Averaging carries the noise of edges and lamps to what is beside them.
+  const std::vector<Rgb> own = picture.variance;
+  picture.variance = blurred(own, picture.width, picture.height, variance_radius(samples));
+  // Averaging carries the noise of edges and lamps to what is beside them, and away from single
+  // pixels that a few lucky paths have brightened: those are alike to nothing then, and stay.
   for (size_t i = 0; i < guess.size(); ++i)
-    picture.variance[i] = glm::min(picture.variance[i], guess[i]);
+    picture.variance[i] = glm::max(glm::min(picture.variance[i], guess[i]), own[i]);
   return filter_by_features(picture, threads);
 }
 

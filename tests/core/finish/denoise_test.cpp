@@ -160,6 +160,37 @@ TEST(Denoise, DampsFirefliesButNoHighlights) {
   EXPECT_GT(clean.at(60, 30, 0), 250.0F);
 }
 
+// Where a lamp is found by one path in a thousand, a quarter of the pixels has one: they are no
+// single fireflies, and their light belongs to all.
+TEST(Denoise, SpreadsTheLightOfLuckyPathsThatAreMany) {
+  Image picture = noisy_picture(true);
+  double before = 0.0;
+  for (int y = 0; y < kHeight; ++y) {
+    for (int x = 0; x < kWidth; ++x) {
+      const bool lucky = mix64(static_cast<uint64_t>(y * kWidth + x)) % 4 == 0;
+      for (int c = 0; c < 3; ++c) {
+        picture.at(x, y, c) =
+            (lucky ? 2.0F : 0.2F) + 0.02F * bell(static_cast<uint64_t>((y * kWidth + x) * 3 + c));
+        picture.at(x, y, 4 + c) = lucky ? 1.8F * 1.8F : 0.02F * 0.02F;
+        picture.at(x, y, 7 + c) = 0.5F;
+      }
+      before += double{picture.at(x, y, 0)};
+    }
+  }
+  const Image clean = cleaned(picture);
+  double after = 0.0;
+  double squares = 0.0;
+  for (int y = 0; y < kHeight; ++y) {
+    for (int x = 0; x < kWidth; ++x) {
+      after += double{clean.at(x, y, 0)};
+      squares += double{clean.at(x, y, 0)} * double{clean.at(x, y, 0)};
+    }
+  }
+  constexpr double kPixels = kWidth * kHeight;
+  EXPECT_NEAR(after / before, 1.0, 0.05);
+  EXPECT_LT(std::sqrt(squares / kPixels - (after / kPixels) * (after / kPixels)), 0.1);
+}
+
 // Fine stripes between lamps, of less contrast than what the lamps' edges make a pixel differ: were
 // those taken for noise, stripes would go for 3 pixels around.
 TEST(Denoise, TakesTheEdgesOfLampsForNoNoise) {
