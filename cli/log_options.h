@@ -17,9 +17,8 @@ inline void add_log_options(CLI::App& app, farm::LogOptions& log) {
            if (!level) throw CLI::ValidationError("--log-level", level.error().message);
            log.level = *level;
          },
-         "what standard error is told: debug, info, warning or error, and what is weightier "
-         "(default: info)")
-      ->type_name("LEVEL");
+         "what standard error is told: what is as weighty as that, or weightier (default: info)")
+      ->type_name("debug|info|warning|error");
   app.add_option_function<std::string>(
          "--log-format",
          [&log](const std::string& name) {
@@ -27,9 +26,9 @@ inline void add_log_options(CLI::App& app, farm::LogOptions& log) {
            if (!format) throw CLI::ValidationError("--log-format", format.error().message);
            log.format = *format;
          },
-         "how: text, or json with time, level and the ids of job, frame, unit and worker as fields "
-         "(default: text)")
-      ->type_name("FORMAT");
+         "how: as text, or as JSON with time, level and the ids of job, frame, unit and worker as "
+         "fields (default: text)")
+      ->type_name("text|json");
 }
 
 }  // namespace hyades::cli

@@ -27,6 +27,10 @@ TEST(Complaints, WordsOfOtherRenderersAreKnown) {
   says("materials: {m: {type: principled, rough: 1}}\n", ", did you mean 'roughness'?");
   says("objects: {a: {shape: rect}}\n", ", did you mean 'rectangle'?");
   says("objects: {a: {shape: sphere, r: 2}}\n", ", did you mean 'radius'?");
+  says("objects: {a: {shape: box, material: {type: lambert}}}\n",
+       "material is a map, expected a material's name, which stands in 'materials'");
+  says("bounces: 3\n", "did you mean 'integrator: {max_depth: N}'?");
+  says("sampling: {bounces: 3}\n", "; how deep paths go is the integrator's 'max_depth'");
   says("seed: 3\n", "did you mean 'sampling: {seed: N}'?");
   says("size: [3, 3]\n", "did you mean 'film: {size: [WIDTH, HEIGHT]}'?");
   says("outputs: [{file: a.exr, layers: [Z]}]\n", "layer is 'Z', did you mean 'depth'?");
