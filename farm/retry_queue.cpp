@@ -5,7 +5,8 @@
 
 namespace hyades::farm {
 
-RetryQueue::RetryQueue(size_t threads, std::chrono::nanoseconds pause) : pause_(pause) {
+RetryQueue::RetryQueue(size_t threads, std::chrono::nanoseconds pause, size_t of_one)
+    : pause_(pause), of_one_(of_one) {
   for (size_t i = 0; i < threads; ++i) threads_.emplace_back([this] { work(); });
 }
 
@@ -46,7 +47,8 @@ std::optional<uint64_t> RetryQueue::take_next(Time now) {
   double least = std::numeric_limits<double>::infinity();
   for (auto key = ready_.begin(); key != ready_.end() && least > 0; ++key) {
     const std::string& owner = tasks_.at(*key).owner;
-    if (owners_in_work_.contains(owner)) continue;
+    const auto his = in_work_of_.find(owner);
+    if (his != in_work_of_.end() && his->second >= of_one_) continue;
     const double used = shares_.used(owner, now);
     if (used >= least) continue;
     least = used;
@@ -79,7 +81,7 @@ void RetryQueue::work() {
     const std::string owner = queue->second.owner;
     Task task = std::move(left.front());
     ++in_work_;
-    if (!owner.empty()) owners_in_work_.insert(owner);
+    if (!owner.empty()) ++in_work_of_[owner];
     lock.unlock();
     const bool done = task();
     if (done) task = nullptr;
@@ -87,7 +89,7 @@ void RetryQueue::work() {
     --in_work_;
     const Time now = std::chrono::steady_clock::now();
     if (!owner.empty()) {
-      owners_in_work_.erase(owner);
+      if (--in_work_of_[owner] == 0) in_work_of_.erase(owner);
       shares_.use(owner, std::chrono::duration<double>(now - begun).count(), now);
     }
     if (done) {

@@ -7,7 +7,6 @@
 #include <functional>
 #include <map>
 #include <optional>
-#include <set>
 #include <string>
 #include <thread>
 #include <vector>
@@ -20,14 +19,16 @@ namespace hyades::farm {
 /// What has to be done in the background, by threads of its own. Tasks of one key (a job, say) are
 /// done in the order in which they were added, one at a time; one that is not done comes again
 /// after a pause, and those of other keys go on meanwhile. What goes on for ever is a task that is
-/// never done. Tasks that have an owner take turns by owners: one of each is done at a time, and
-/// that is next whose owner has lately used the least time (FairShares). Thread-safe.
+/// never done. Tasks that have an owner take turns by owners: so many of each are done at a time,
+/// and that is next whose owner has lately used the least time (FairShares). Thread-safe.
 class RetryQueue {
  public:
   /// Whether it is done; false: it comes again after the queue's pause. Called without any lock.
   using Task = std::function<bool()>;
 
-  explicit RetryQueue(size_t threads, std::chrono::nanoseconds pause = std::chrono::seconds(1));
+  /// `of_one`: how many tasks of one owner are done at a time, at least 1.
+  explicit RetryQueue(size_t threads, std::chrono::nanoseconds pause = std::chrono::seconds(1),
+                      size_t of_one = 1);
   /// Ends as end() does.
   ~RetryQueue();
   RetryQueue(const RetryQueue&) = delete;
@@ -47,6 +48,7 @@ class RetryQueue {
   std::optional<uint64_t> take_next(Time now) HYADES_REQUIRES(mutex_);
 
   const std::chrono::nanoseconds pause_;
+  const size_t of_one_;
   core::Mutex mutex_;
   core::CondVar wake_;
   struct Tasks {
@@ -58,8 +60,8 @@ class RetryQueue {
   std::deque<uint64_t> ready_ HYADES_GUARDED_BY(mutex_);
   std::multimap<Time, uint64_t> put_off_ HYADES_GUARDED_BY(mutex_);
   size_t in_work_ HYADES_GUARDED_BY(mutex_) = 0;
-  std::set<std::string> owners_in_work_ HYADES_GUARDED_BY(mutex_);
-  FairShares shares_ HYADES_GUARDED_BY(mutex_);  ///< seconds, of owners
+  std::map<std::string, size_t> in_work_of_ HYADES_GUARDED_BY(mutex_);  ///< by owner
+  FairShares shares_ HYADES_GUARDED_BY(mutex_);                         ///< seconds, of owners
   bool end_ HYADES_GUARDED_BY(mutex_) = false;
   bool ended_ HYADES_GUARDED_BY(mutex_) = false;
   std::vector<std::thread> threads_;

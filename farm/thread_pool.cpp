@@ -1,10 +1,12 @@
 #include "farm/thread_pool.h"
 
+#include <algorithm>
 #include <utility>
 
 namespace hyades::farm {
 
-ThreadPool::ThreadPool(size_t threads, size_t most_waiting) : most_waiting_(most_waiting) {
+ThreadPool::ThreadPool(size_t threads, size_t most_waiting, size_t most_of_one)
+    : most_waiting_(most_waiting), most_of_one_(most_of_one) {
   for (size_t i = 0; i < threads; ++i) threads_.emplace_back([this] { work(); });
 }
 
@@ -29,22 +31,42 @@ bool ThreadPool::submit(std::function<void()> what, const std::string& owner) {
   return true;
 }
 
+std::deque<std::string>::iterator ThreadPool::next_owner() {
+  return std::find_if(turns_.begin(), turns_.end(),
+                      [this](const std::string& owner) HYADES_REQUIRES(mutex_) {
+                        const auto his = in_work_.find(owner);
+                        return his == in_work_.end() || his->second < most_of_one_;
+                      });
+}
+
 void ThreadPool::work() {
   core::MutexLock lock(mutex_);
   for (;;) {
-    while (!end_ && waiting_ == 0) wake_.wait(mutex_);
-    if (waiting_ == 0) return;
-    const auto his = of_.find(turns_.front());
+    const auto turn = next_owner();
+    if (turn == turns_.end()) {
+      if (end_ && waiting_ == 0) return;
+      wake_.wait(mutex_);
+      continue;
+    }
+    const std::string owner = *turn;
+    turns_.erase(turn);
+    const auto his = of_.find(owner);
     std::function<void()> what = std::move(his->second.front());
     his->second.pop_front();
     --waiting_;
-    if (!his->second.empty()) turns_.push_back(turns_.front());
-    turns_.pop_front();
-    if (his->second.empty()) of_.erase(his);
+    if (his->second.empty()) {
+      of_.erase(his);
+    } else {
+      turns_.push_back(owner);
+    }
+    if (!owner.empty()) ++in_work_[owner];
     lock.unlock();
     what();
     what = nullptr;  // what it holds may take its time to go
     lock.lock();
+    if (!owner.empty() && --in_work_[owner] == 0) in_work_.erase(owner);
+    // Whoever waits for the end, or for the owner to have less than his share.
+    wake_.notify_all();
   }
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <deque>
 #include <functional>
 #include <map>
@@ -17,8 +18,9 @@ namespace hyades::farm {
 /// are done for take turns. Thread-safe.
 class ThreadPool {
  public:
-  /// `threads`: at least 1. `most_waiting`: of things that nobody has begun with.
-  ThreadPool(size_t threads, size_t most_waiting);
+  /// `threads`: at least 1. `most_waiting`: of things that nobody has begun with. `most_of_one`:
+  /// how many threads one owner with a name has at a time, where things may take long.
+  ThreadPool(size_t threads, size_t most_waiting, size_t most_of_one = SIZE_MAX);
   /// Does all that was submitted, then ends.
   ~ThreadPool();
   ThreadPool(const ThreadPool&) = delete;
@@ -31,13 +33,17 @@ class ThreadPool {
 
  private:
   void work() HYADES_EXCLUDES(mutex_);
+  /// Takes the owner whose turn it is; none: nothing waits, or theirs have their share.
+  std::deque<std::string>::iterator next_owner() HYADES_REQUIRES(mutex_);
 
   const size_t most_waiting_;
+  const size_t most_of_one_;
   core::Mutex mutex_;
   core::CondVar wake_;
   size_t waiting_ HYADES_GUARDED_BY(mutex_) = 0;
   std::map<std::string, std::deque<std::function<void()>>> of_ HYADES_GUARDED_BY(mutex_);
   std::deque<std::string> turns_ HYADES_GUARDED_BY(mutex_);  ///< the owners for whom things wait
+  std::map<std::string, size_t> in_work_ HYADES_GUARDED_BY(mutex_);  ///< of owners with a name
   bool end_ HYADES_GUARDED_BY(mutex_) = false;
   std::vector<std::thread> threads_;
 };

@@ -22,8 +22,8 @@ enum class Runs {
 /// and results come by them too; HTTP has one. Two pools, so that files on a disk that does not
 /// answer leave those alone who only want to know something.
 struct Executors {
-  farm::ThreadPool store{4, 1000};  ///< what is read from and stored in the job store
-  farm::ThreadPool files{8, 1000};  ///< what reads or writes files besides
+  farm::ThreadPool store{4, 1000, 2};  ///< what is read from and stored in the job store
+  farm::ThreadPool files{8, 1000, 4};  ///< what reads or writes files besides
 
   /// The pool for what runs so; null: none, it runs at once.
   farm::ThreadPool* of(Runs runs) {

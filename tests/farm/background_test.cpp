@@ -88,6 +88,38 @@ TEST(RetryQueue, OwnersTakeTurnsByTheTimeThatTheirsTakes) {
             std::vector<std::string>(3, "ann"));
 }
 
+/// Tasks of eve's that do not end keep no others from being done, however many there are.
+TEST(RetryQueue, OfOneOwnerHaveNoMoreThreadsThanTheyMay) {
+  std::promise<void> go;
+  const std::shared_future<void> gone = go.get_future().share();
+  std::atomic<int> begun{0};
+  std::promise<void> other;
+  RetryQueue queue(3, std::chrono::seconds(1), 2);
+  for (uint64_t key = 1; key <= 5; ++key) {
+    queue.add(
+        key,
+        [&, gone] {
+          ++begun;
+          gone.wait();
+          return true;
+        },
+        "eve");
+  }
+  while (begun < 2) std::this_thread::yield();
+  queue.add(
+      6,
+      [&] {
+        other.set_value();
+        return true;
+      },
+      "ann");
+  EXPECT_EQ(other.get_future().wait_for(std::chrono::seconds(30)), std::future_status::ready);
+  EXPECT_EQ(begun, 2);
+  go.set_value();
+  queue.end();
+  EXPECT_EQ(begun, 5);
+}
+
 TEST(FairShares, WhatWasLongAgoCountsLess) {
   using std::chrono::minutes;
   const FairShares::Time now;
@@ -186,6 +218,30 @@ TEST(ThreadPool, TakesTurnsBetweenOwners) {
     go.set_value();
   }
   EXPECT_EQ(order, "vbvbvv");
+}
+
+TEST(ThreadPool, LeavesThreadsToOthers) {
+  std::promise<void> go;
+  const std::shared_future<void> gone = go.get_future().share();
+  std::atomic<int> begun{0};
+  std::promise<void> other;
+  {
+    ThreadPool pool(3, 8, 2);
+    for (int i = 0; i < 4; ++i) {
+      ASSERT_TRUE(pool.submit(
+          [&, gone] {
+            ++begun;
+            gone.wait();
+          },
+          "vic"));
+    }
+    while (begun < 2) std::this_thread::yield();
+    ASSERT_TRUE(pool.submit([&] { other.set_value(); }, "bob"));
+    EXPECT_EQ(other.get_future().wait_for(std::chrono::seconds(30)), std::future_status::ready);
+    EXPECT_EQ(begun, 2);
+    go.set_value();
+  }
+  EXPECT_EQ(begun, 4) << "all that was taken is done";
 }
 
 }  // namespace
