@@ -176,6 +176,7 @@ Controller::~Controller() {
   parts_->disk.end();
   // Others leave it some tasks.
   parts_->context.background.end();
+  parts_->context.closing.end();
   parts_->jobs.clear();
 }
 

@@ -49,9 +49,13 @@ struct ControllerContext {
   std::unique_lock<std::timed_mutex> wait_for_submissions() {
     return std::unique_lock(submissions, std::chrono::seconds(2));
   }
-  /// Stores what has changed; tasks are kept apart by the job's id, or kWorkersKey.
-  farm::RetryQueue background{2};
+  /// Stores what has changed; tasks are kept apart by the job's id, or kWorkersKey. Half of the
+  /// threads are for other owners than the one who has most to store.
+  farm::RetryQueue background{4, std::chrono::seconds(1), 2};
   static constexpr uint64_t kWorkersKey = 0;  ///< no job has this number
+  /// Waits for what is left of jobs that have ended, by their ids: seconds, where much of a film
+  /// has still to be written.
+  farm::RetryQueue closing{4, std::chrono::seconds(1), 2};
 };
 
 }  // namespace hyades::coordinator

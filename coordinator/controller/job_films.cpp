@@ -60,7 +60,7 @@ void JobFilms::persist(const Persist& persist, Delivery* delivery) {
                  [&](const FrameFailedRecord& failed)
                      HYADES_REQUIRES(state_lock) { fail_frame(*active, id, failed); },
                  [&](const FrameRestartedRecord& again)
-                     HYADES_REQUIRES(state_lock) { restart_frame(id, again); },
+                     HYADES_REQUIRES(state_lock) { restart_frame(*active, id, again); },
                  [&](const FrameFinishedRecord& done)
                      HYADES_REQUIRES(state_lock) { of(*active).append(id, done); },
                  [&](const TileVoidedRecord& voided)
@@ -71,12 +71,14 @@ void JobFilms::persist(const Persist& persist, Delivery* delivery) {
              persist.record);
 }
 
-void JobFilms::restart_frame(RecordId id, const FrameRestartedRecord& again) {
+void JobFilms::restart_frame(const ActiveJob& active, RecordId id,
+                             const FrameRestartedRecord& again) {
   std::deque<Restart>& waiting = restarts_[again.job];
   waiting.push_back({id, again});
   if (waiting.size() > 1) return;
-  context_.background.add(static_cast<uint64_t>(again.job),
-                          [this, job = again.job] { return restart_some(job); });
+  context_.background.add(
+      static_cast<uint64_t>(again.job), [this, job = again.job] { return restart_some(job); },
+      active.stored.owner);
 }
 
 /// Many frames may begin again together: each by itself would wait for the disk.
@@ -105,7 +107,8 @@ bool JobFilms::restart_some(JobId job) {
   if (waiting.empty()) {
     restarts_.erase(job);
   } else {
-    context_.background.add(static_cast<uint64_t>(job), [this, job] { return restart_some(job); });
+    context_.background.add(
+        static_cast<uint64_t>(job), [this, job] { return restart_some(job); }, still->stored.owner);
   }
   return true;
 }
@@ -114,17 +117,20 @@ void JobFilms::fail_frame(ActiveJob& active, RecordId id, const FrameFailedRecor
   const FailedFrame& failed = record.failed;
   const FrameNote& note = active.frames[failed.frame];
   StoredFrame frame{failed.frame, false, failed.reason, note.worker_class, note.restarts};
-  context_.background.add(active.stored.id, [this, id, record, frame] {
-    const core::Status stored =
-        context_.store->frame_over(static_cast<uint64_t>(record.job), frame, {});
-    const StateLock lock(context_.mutex);
-    ActiveJob* still = jobs_.find(record.job);
-    if (still == nullptr) return true;
-    // Where it could not be stored the frame fails again after a restart, if it must.
-    if (!stored) still->trouble = stored.error().message;
-    of(*still).append(id, record);
-    return true;
-  });
+  context_.background.add(
+      active.stored.id,
+      [this, id, record, frame] {
+        const core::Status stored =
+            context_.store->frame_over(static_cast<uint64_t>(record.job), frame, {});
+        const StateLock lock(context_.mutex);
+        ActiveJob* still = jobs_.find(record.job);
+        if (still == nullptr) return true;
+        // Where it could not be stored the frame fails again after a restart, if it must.
+        if (!stored) still->trouble = stored.error().message;
+        of(*still).append(id, record);
+        return true;
+      },
+      active.stored.owner);
 }
 
 std::unique_ptr<FilmStore> JobFilms::make(ActiveJob& active, bool resume) {
@@ -148,7 +154,8 @@ std::unique_ptr<FilmStore> JobFilms::make(ActiveJob& active, bool resume) {
 FilmStore& JobFilms::of(ActiveJob& active) {
   if (!active.film_store) {
     active.film_store = make(active, false);
-    context_.background.add(active.stored.id, [this, job = active.id] { return open(job); });
+    context_.background.add(
+        active.stored.id, [this, job = active.id] { return open(job); }, active.stored.owner);
   }
   return *active.film_store;
 }

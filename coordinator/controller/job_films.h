@@ -34,7 +34,8 @@ class JobFilms {
   class Listener;
   FilmStore& of(ActiveJob& active) HYADES_REQUIRES(state_lock);
   bool open(JobId job) HYADES_EXCLUDES(state_lock);
-  void restart_frame(RecordId id, const FrameRestartedRecord& again) HYADES_REQUIRES(state_lock);
+  void restart_frame(const ActiveJob& active, RecordId id, const FrameRestartedRecord& again)
+      HYADES_REQUIRES(state_lock);
   bool restart_some(JobId job) HYADES_EXCLUDES(state_lock);
   void fail_frame(ActiveJob& active, RecordId id, const FrameFailedRecord& record)
       HYADES_REQUIRES(state_lock);

@@ -90,6 +90,12 @@ core::Result<v1::Job> read_options(const v1::SubmitRequest& request) {
   return options;
 }
 
+grpc::Status is_taken_up(uint64_t id) {
+  return farm::retry_later(grpc::StatusCode::UNAVAILABLE,
+                           fmt::format("job {} is just being taken up", id),
+                           std::chrono::seconds(1));
+}
+
 /// What is stored of a new job, but for what its document says.
 StoredJob new_row(const v1::SubmitRequest& request, const v1::Job& options, bool owner_proven) {
   StoredJob row;
@@ -190,6 +196,9 @@ grpc::Status JobIntake::may_have_one_more(const std::string& owner) {
     for (const auto& [id, job] : jobs_.waiting()) {
       if (job.owner == owner) ++open;
     }
+    for (const auto& [id, job] : jobs_.recovering()) {
+      if (job.owner == owner && !jobs_.waiting().contains(id)) ++open;
+    }
   }
   if (const grpc::Status may = quotas_.may_add_job(owner, open); !may.ok()) return may;
   if (!quotas_.limits_core_hours()) return grpc::Status::OK;
@@ -209,6 +218,10 @@ grpc::Status JobIntake::has_room_for(const std::string& owner, const JobRoom& mo
       const JobRoom one{active->numbers.size(), active->bytes};
       add(one, all);
       if (active->stored.owner == owner) add(one, his);
+    }
+    for (const auto& [id, job] : jobs_.recovering()) {
+      add(job.room, all);
+      if (job.owner == owner) add(job.room, his);
     }
   }
   const JobRoom& most = context_.options.job_room;
@@ -243,7 +256,7 @@ void JobIntake::retry(uint64_t id, const JobReply& then) {
   // A long document takes seconds, and others submit meanwhile.
   std::optional<JobRead> read = read_ahead(id);
   if (read && read->obstacle == Obstacle::others_are_read) return then(others_are_read(), now);
-  const auto one = context_.wait_for_submissions();
+  auto one = context_.wait_for_submissions();
   if (!one) return then(others_submit(), now);
   bool open = false;
   {
@@ -260,7 +273,7 @@ void JobIntake::retry(uint64_t id, const JobReply& then) {
   }
   if (context_.stop) records_.answer_late({});
   if (open) return;
-  const grpc::Status reopened = reopen(id, std::move(read), now);
+  const grpc::Status reopened = reopen(id, std::move(read), std::move(one), now);
   then(reopened, now);
 }
 
@@ -271,8 +284,9 @@ std::optional<JobRead> JobIntake::read_ahead(uint64_t id) {
   return recovery_.read(id);
 }
 
-/// A job that has ended is open again.
-grpc::Status JobIntake::reopen(uint64_t id, std::optional<JobRead> read, v1::Job& now) {
+/// A job that has ended is open again. Lets go of `one` once nobody else can take it up or away.
+grpc::Status JobIntake::reopen(uint64_t id, std::optional<JobRead> read,
+                               std::unique_lock<std::timed_mutex> one, v1::Job& now) {
   if (const grpc::Status left = wait_until_left(id); !left.ok()) return left;
   StoredJob job;
   if (const grpc::Status may = may_reopen(id, job); !may.ok()) return may;
@@ -280,21 +294,28 @@ grpc::Status JobIntake::reopen(uint64_t id, std::optional<JobRead> read, v1::Job
     return farm::retry_later(grpc::StatusCode::UNAVAILABLE,
                              fmt::format("job {} has ended just now", id), std::chrono::seconds(1));
   }
-  if (core::Status gone = context_.store->forget_failed_frames(id); !gone)
-    return farm::unavailable(gone.error());
   const StoredJob before = job;
   job.state = StoredState::running;
   job.ended_ms = 0;
   job.reason.clear();
+  const auto mine = [&] {
+    const StateLock lock(context_.mutex);
+    return jobs_.begin_recovery(id, {job.owner, {job.frames, memory_of(job)}});
+  }();
+  if (!mine) return is_taken_up(id);
   if (core::Status noted = context_.store->update_job(job); !noted)
     return farm::unavailable(noted.error());
-  if (core::Status recovered =
-          recovery_.recover(id, std::move(*read), "goes on: somebody has retried it");
-      !recovered) {
+  one.unlock();  // what is in its films and outputs may be much
+  const core::Status forgotten = context_.store->forget_failed_frames(id);
+  const core::Status recovered =
+      forgotten ? recovery_.recover(id, std::move(*read), "goes on: somebody has retried it")
+                : forgotten;
+  if (!recovered) {
     job = before;  // done, if only some of its pictures are suspect
     job.reason = "could not be taken up again: " + recovered.error().message;
     // Where this fails too it is tried again at the next start.
     (void)context_.store->update_job(job);
+    if (!forgotten) return farm::unavailable(forgotten.error());
     return {grpc::StatusCode::FAILED_PRECONDITION, recovered.error().message};
   }
   v1::GetJobResponse got;
@@ -329,6 +350,7 @@ grpc::Status JobIntake::remove(uint64_t id) {
       return {grpc::StatusCode::FAILED_PRECONDITION,
               fmt::format("job {} has not ended: cancel it first", id)};
     }
+    if (jobs_.recovering().contains(id)) return is_taken_up(id);
   }
   if (const grpc::Status left = wait_until_left(id); !left.ok()) return left;
   const auto stored = context_.store->job(id);

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <string>
 #include <vector>
@@ -61,7 +62,8 @@ class JobIntake {
                        const std::vector<core::AssetRecord>& files)
       HYADES_EXCLUDES(state_lock) HYADES_NO_THREAD_SAFETY_ANALYSIS;
   std::optional<JobRead> read_ahead(uint64_t id) HYADES_EXCLUDES(state_lock);
-  grpc::Status reopen(uint64_t job, std::optional<JobRead> read, v1::Job& now)
+  grpc::Status reopen(uint64_t job, std::optional<JobRead> read,
+                      std::unique_lock<std::timed_mutex> one, v1::Job& now)
       HYADES_EXCLUDES(state_lock);
   grpc::Status may_reopen(uint64_t id, StoredJob& job) HYADES_EXCLUDES(state_lock);
   core::Status forget(uint64_t job);

@@ -220,8 +220,14 @@ grpc::Status JobQueries::get(uint64_t id, std::optional<int32_t> after,
                              v1::GetJobResponse& response, v1::FrameState only, size_t most_bytes) {
   if (get_open(id, after, response, only, most_bytes)) return grpc::Status::OK;
   FramePage page(*response.mutable_frames(), most_bytes);
-  const auto stored = context_.store->job(id);
+  auto stored = context_.store->job(id);
   if (const grpc::Status there = job_is_there(id, stored); !there.ok()) return there;
+  {
+    const StateLock lock(context_.mutex);
+    const auto waiting = jobs_.waiting().find(id);
+    if (waiting != jobs_.waiting().end() && !has_ended((*stored)->state))
+      (*stored)->reason = waiting->second.reason;
+  }
   *response.mutable_job() = describe(**stored);
   for (;;) {
     const auto frames = context_.store->frames(id, after, kMostFramesAtOnce);

@@ -37,10 +37,14 @@ grpc::Status not_stored(const std::string& why) {
 void JobRecords::when_stored(uint64_t job, JobReply then) { wait(job, false, std::move(then)); }
 
 void JobRecords::when_done(uint64_t key, JobReply then) {
-  context_.background.add(key, [this, key, number = next_reply_] {
-    answer(key, number);
-    return true;
-  });
+  const ActiveJob* active = jobs_.find(key);
+  context_.background.add(
+      key,
+      [this, key, number = next_reply_] {
+        answer(key, number);
+        return true;
+      },
+      active != nullptr ? active->stored.owner : std::string());
   wait(key, true, std::move(then));
 }
 
@@ -62,8 +66,9 @@ void JobRecords::answer(uint64_t key, uint64_t number) {
 
 void JobRecords::store(ActiveJob& active) {
   if (std::exchange(active.storing_row, true)) return;
-  context_.background.add(active.stored.id,
-                          [this, id = active.stored.id] { return store_now(id); });
+  context_.background.add(
+      active.stored.id, [this, id = active.stored.id] { return store_now(id); },
+      active.stored.owner);
 }
 
 bool JobRecords::store_now(uint64_t id) {
@@ -137,7 +142,9 @@ void JobRecords::look_after(TimePoint now, bool disk_full, const Scheduler& sche
       store(*active);
     }
     if (!active->log.begin_storing(now)) continue;
-    context_.background.add(active->stored.id, [this, id = active->id] { return store_lines(id); });
+    context_.background.add(
+        active->stored.id, [this, id = active->id] { return store_lines(id); },
+        active->stored.owner);
   }
 }
 
@@ -180,7 +187,8 @@ void JobRecords::end(ActiveJob& active, bool cancelled, const std::string& why) 
   jobs_.note(active, v1::LOG_LEVEL_INFO, std::nullopt, {},
              fmt::format("ended: {} done, {} failed{}", core::counted(stored.frames_done, "frame"),
                          stored.frames_failed, cancelled ? ", cancelled" : ""));
-  context_.background.add(stored.id, [this, id = stored.id] { return store_end(id); });
+  context_.background.add(
+      stored.id, [this, id = stored.id] { return store_end(id); }, stored.owner);
 }
 
 bool JobRecords::store_end(uint64_t id) {
@@ -204,13 +212,16 @@ bool JobRecords::store_end(uint64_t id) {
   }
   if (!lines.empty() && !context_.store->add_lines(id, lines)) {
     // The job is over for whoever waits for it; its last words come as long as there is hope.
-    context_.background.add(id, [this, id, lines = std::move(lines), tries = 0]() mutable {
-      const auto still = context_.store->state(id);
-      const bool deleted = still && !*still;
-      return deleted || context_.store->add_lines(id, lines).ok() || ++tries == kMostTries;
-    });
+    context_.background.add(
+        id,
+        [this, id, lines = std::move(lines), tries = 0]() mutable {
+          const auto still = context_.store->state(id);
+          const bool deleted = still && !*still;
+          return deleted || context_.store->add_lines(id, lines).ok() || ++tries == kMostTries;
+        },
+        job.owner);
   }
-  std::unique_ptr<ActiveJob> over;
+  std::shared_ptr<ActiveJob> over;
   std::vector<PendingReply> told;
   {
     const StateLock lock(context_.mutex);
@@ -219,12 +230,17 @@ bool JobRecords::store_end(uint64_t id) {
     watchers_.poke(id);
   }
   for (const PendingReply& reply : told) reply.then(grpc::Status::OK, queries_.describe(job));
-  over.reset();  // waits for the film store's thread
-  // Films of frames that failed stay, should they be retried.
-  std::error_code ignored;
-  if (job.state == StoredState::done)
-    std::filesystem::remove_all(context_.films_folder(id), ignored);
-  jobs_.left(id);
+  context_.closing.add(
+      id,
+      [this, id, done = job.state == StoredState::done, over = std::move(over)]() mutable {
+        over.reset();  // waits for the film store's thread
+        // Films of frames that failed stay, should they be retried.
+        std::error_code ignored;
+        if (done) std::filesystem::remove_all(context_.films_folder(id), ignored);
+        jobs_.left(id);
+        return true;
+      },
+      job.owner);
   return true;
 }
 

@@ -27,6 +27,8 @@ constexpr uint64_t kMostAtOnce = 256;
 /// For the documents of others to be read: a few of the longest. Who reopens a job asks once.
 constexpr std::chrono::seconds kRecoveryPatience{30};
 
+constexpr uint32_t kOutputsAtOnce = 1000;
+
 /// What a job's log says where it goes on by itself.
 constexpr const char* kRestarted = "goes on: the coordinator has been started again";
 
@@ -142,63 +144,82 @@ JobRead JobRecovery::read(uint64_t id) {
 core::Status JobRecovery::recover_all() {
   const auto ids = context_.store->open_jobs();
   if (!ids) return ids.error();
-  using Clock = std::chrono::steady_clock;
-  const auto end = Clock::now() + context_.options.recovery_time;
-  for (const uint64_t id : *ids) {
-    if (Clock::now() >= end) {
-      wait(id, core::Error{"the coordinator has just been started, and others are read first"});
-      continue;
-    }
-    JobRead one = read(id);
-    const Obstacle obstacle = one.obstacle;
-    const core::Status recovered = recover(id, std::move(one), kRestarted);
-    if (recovered) continue;
-    if (obstacle != Obstacle::lasting || !give_up(id, recovered.error())) {
-      wait(id, recovered.error());
-    }
+  {
+    const core::MutexLock lock(mutex_);
+    not_tried_ = ids->size();
   }
+  for (const uint64_t id : *ids) recover_in_background(id);
+  const auto end = std::chrono::steady_clock::now() + context_.options.recovery_time;
+  core::MutexLock lock(mutex_);
+  while (not_tried_ > 0 && std::chrono::steady_clock::now() < end) tried_.wait_until(mutex_, end);
   return {};
 }
 
-/// Perhaps the disk is full, or does not answer: the job waits, and says why.
-void JobRecovery::wait(uint64_t id, const core::Error& why) {
+void JobRecovery::recover_in_background(uint64_t id) {
   StoredJob waiting;
   if (auto stored = context_.store->job(id); stored && *stored) waiting = std::move(**stored);
   waiting.id = id;
-  waiting.reason = "waits to be taken up again: " + why.message;
-  if (!waiting.spec.empty()) (void)context_.store->update_job(waiting);
+  waiting.reason = "waits to be taken up again: the coordinator has just been started";
   const std::string owner = waiting.owner;
   const StateLock lock(context_.mutex);
   jobs_.wait_for_recovery(std::move(waiting));
   queue_.add(
-      id, [this, id] { return recover_later(id); }, owner);
+      id,
+      [this, id, first = true]() mutable {
+        const bool over = recover_later(id);
+        if (std::exchange(first, false)) {
+          const core::MutexLock one(mutex_);
+          --not_tried_;
+          tried_.notify_all();
+        }
+        return over;
+      },
+      owner);
 }
 
 /// Whether there is nothing left to try; for the job's tasks.
 bool JobRecovery::recover_later(uint64_t id) {
-  if (!try_to_recover(id)) return false;
+  const core::Result<bool> over = try_to_recover(id);
+  if (over && !*over) return false;
+  if (!over) {
+    // Perhaps the disk is full, or does not answer: the job waits, and says why.
+    const std::string why = "waits to be taken up again: " + over.error().message;
+    auto stored = context_.store->job(id);
+    if (stored && *stored && (*stored)->reason != why) {
+      (*stored)->reason = why;
+      (void)context_.store->update_job(**stored);
+    }
+    const StateLock lock(context_.mutex);
+    jobs_.still_waits(id, why);
+    return false;
+  }
   const StateLock lock(context_.mutex);
   jobs_.no_longer_waits(id);
   return true;
 }
 
-bool JobRecovery::try_to_recover(uint64_t id) {
+/// Whether there is nothing left to try; an error says what stands in the way.
+core::Result<bool> JobRecovery::try_to_recover(uint64_t id) {
   if (context_.stop) return true;
   JobRead again = read(id);  // others submit meanwhile
   const Obstacle obstacle = again.obstacle;
-  // Not while somebody deletes it, or unused files are swept.
-  const auto one = context_.wait_for_submissions();
-  if (!one) return false;
-  const auto stored = context_.store->job(id);
-  if (!stored) return false;
-  if (!*stored || has_ended((*stored)->state)) return true;  // somebody has deleted it
+  std::unique_ptr<JobTable::Recovery> mine;
   {
+    // Not while somebody deletes it, or unused files are swept.
+    const auto one = context_.wait_for_submissions();
+    if (!one) return false;
+    const auto state = context_.store->state(id);
+    if (!state) return state.error();
+    if (!*state || has_ended(**state)) return true;  // somebody has deleted it
     const StateLock lock(context_.mutex);
     if (jobs_.find(JobId{id}) != nullptr) return true;  // cancelled, and retried
+    mine = jobs_.begin_recovery(id, {});
+    if (!mine) return false;
   }
   const core::Status recovered = recover(id, std::move(again), kRestarted);
-  if (recovered) return true;
-  return obstacle == Obstacle::lasting && give_up(id, recovered.error()).ok();
+  if (recovered || (obstacle == Obstacle::lasting && give_up(id, recovered.error()))) return true;
+  if (obstacle == Obstacle::others_are_read) return false;
+  return recovered.error();
 }
 
 /// The job fails alone, with the reason kept; `retry` reopens it.
@@ -279,21 +300,25 @@ core::Result<RestoredJob> JobRecovery::restore_frames(ActiveJob& active) {
 
 /// Outputs that are missing or have another size than when they were written.
 core::Result<std::vector<StoredOutput>> JobRecovery::lost_outputs(uint64_t id) const {
-  const auto outputs = context_.store->outputs(id, 0, UINT32_MAX);
-  if (!outputs) return outputs.error();
   std::vector<StoredOutput> lost;
-  for (const StoredOutput& output : *outputs) {
-    std::error_code failed;
-    const std::string path = context_.output_folder(id) + "/" + output.path;
-    const auto size = std::filesystem::file_size(path, failed);
-    // What cannot be looked at now may be as it should.
-    if (failed && failed != std::errc::no_such_file_or_directory &&
-        failed != std::errc::not_a_directory) {
-      return core::Error{path + ": " + failed.message()};
+  for (uint64_t after = 0;;) {
+    // Of a long job there are very many, and others need the store too.
+    const auto outputs = context_.store->outputs(id, after, kOutputsAtOnce);
+    if (!outputs) return outputs.error();
+    for (const StoredOutput& output : *outputs) {
+      after = output.number;
+      std::error_code failed;
+      const std::string path = context_.output_folder(id) + "/" + output.path;
+      const auto size = std::filesystem::file_size(path, failed);
+      // What cannot be looked at now may be as it should.
+      if (failed && failed != std::errc::no_such_file_or_directory &&
+          failed != std::errc::not_a_directory) {
+        return core::Error{path + ": " + failed.message()};
+      }
+      if (failed || size != output.size) lost.push_back(output);
     }
-    if (failed || size != output.size) lost.push_back(output);
+    if (outputs->size() < kOutputsAtOnce) return lost;
   }
-  return lost;
 }
 
 /// Where a video is missing, or one of the frames is `repeated`, it is made anew, of all frames:
@@ -301,6 +326,7 @@ core::Result<std::vector<StoredOutput>> JobRecovery::lost_outputs(uint64_t id) c
 core::Status JobRecovery::repeat_for_videos(const ActiveJob& active,
                                             const std::vector<int32_t>& done,
                                             std::set<int32_t>& repeated) {
+  if (active.videos.empty()) return {};
   const auto id = static_cast<uint64_t>(active.id);
   const auto outputs = context_.store->outputs(id, 0, UINT32_MAX);
   if (!outputs) return outputs.error();

@@ -44,9 +44,10 @@ class JobRecovery {
   /// Waits for what is in work.
   void end() { queue_.end(); }
 
-  /// Recovers all jobs that have not ended. One whose files are gone fails alone; one that cannot
-  /// be recovered now or within ControllerOptions::recovery_time, or cannot be stored as failed,
-  /// waits and is tried again. An error where the store does not tell which jobs there are.
+  /// Recovers all jobs that have not ended, in the background; waits for them, but no longer than
+  /// ControllerOptions::recovery_time. One whose files are gone fails alone; one that cannot be
+  /// recovered now, or cannot be stored as failed, waits and is tried again. An error where the
+  /// store does not tell which jobs there are.
   core::Status recover_all() HYADES_EXCLUDES(state_lock);
   /// Reads the job, as it is stored, with its document, which may take seconds.
   JobRead read(uint64_t id) HYADES_EXCLUDES(state_lock);
@@ -59,8 +60,8 @@ class JobRecovery {
 
  private:
   bool recover_later(uint64_t id) HYADES_EXCLUDES(state_lock);
-  bool try_to_recover(uint64_t id) HYADES_EXCLUDES(state_lock);
-  void wait(uint64_t id, const core::Error& why) HYADES_EXCLUDES(state_lock);
+  core::Result<bool> try_to_recover(uint64_t id) HYADES_EXCLUDES(state_lock);
+  void recover_in_background(uint64_t id) HYADES_EXCLUDES(state_lock);
   core::Status give_up(uint64_t id, const core::Error& why);
   std::optional<bool> lacks_files(const v1::JobSpec& spec) HYADES_EXCLUDES(state_lock);
   // Of a job that nobody else knows yet.
@@ -77,8 +78,11 @@ class JobRecovery {
   Dispatcher& dispatcher_;
   JobTable& jobs_;
   JobFilms& films_;
-  /// Jobs that wait, by their ids: long documents hold up nothing but each other.
-  farm::RetryQueue queue_{1};
+  core::Mutex mutex_;
+  core::CondVar tried_;
+  size_t not_tried_ HYADES_GUARDED_BY(mutex_) = 0;  ///< of recover_all()'s
+  /// Jobs that wait, by their ids: of each owner one after the other.
+  farm::RetryQueue queue_{4};
 };
 
 }  // namespace hyades::coordinator

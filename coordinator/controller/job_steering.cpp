@@ -112,10 +112,11 @@ void JobSteering::cancel(uint64_t id, const std::string& by, JobReply then) {
 grpc::Status JobSteering::cancel_waiting(uint64_t id, v1::Job& now) {
   const auto waits = [&] {
     const StateLock lock(context_.mutex);
-    return jobs_.waiting().contains(id) && jobs_.find(id) == nullptr;
+    return jobs_.waiting().contains(id) && jobs_.find(id) == nullptr &&
+           !jobs_.recovering().contains(id);
   };
   if (!waits()) return why_not_open(*context_.store, id);
-  // Nobody recovers it meanwhile.
+  // Nobody begins to recover it meanwhile.
   const auto one = context_.wait_for_submissions();
   auto stored = context_.store->job(id);
   if (!stored) return farm::unavailable(stored.error());

@@ -55,6 +55,22 @@ void JobTable::wait_for_recovery(StoredJob job) {
   waiting_[id] = std::move(job);
 }
 
+void JobTable::still_waits(uint64_t job, const std::string& reason) {
+  const auto waiting = waiting_.find(job);
+  if (waiting != waiting_.end()) waiting->second.reason = reason;
+}
+
+std::unique_ptr<JobTable::Recovery> JobTable::begin_recovery(uint64_t job, Recovering what) {
+  if (!recovering_.try_emplace(job, std::move(what)).second) return nullptr;
+  return std::make_unique<Recovery>(*this, job);
+}
+
+JobTable::Recovery::~Recovery() {
+  if (table_ == nullptr) return;
+  const StateLock lock(table_->mutex_);
+  table_->recovering_.erase(job_);
+}
+
 void JobTable::note(ActiveJob& job, v1::LogLevel level, std::optional<int32_t> frame,
                     const std::string& worker, const std::string& text, const core::Unit* unit) {
   job.note({core::wall_ms(), level, frame, worker, farm::wire_text(text)});

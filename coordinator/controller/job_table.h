@@ -7,8 +7,10 @@
 #include <optional>
 #include <set>
 #include <string>
+#include <utility>
 
 #include "coordinator/controller/active_job.h"
+#include "coordinator/controller/controller_options.h"
 #include "coordinator/controller/state_lock.h"
 
 namespace hyades::coordinator {
@@ -17,6 +19,24 @@ namespace hyades::coordinator {
 class JobTable {
  public:
   using Jobs = std::map<JobId, std::unique_ptr<ActiveJob>>;
+
+  /// A job that is being recovered by one thread, and is in the table soon.
+  struct Recovering {
+    std::string owner;
+    JobRoom room;
+  };
+  /// Its owner alone recovers the job, as long as it lives.
+  class Recovery {
+   public:
+    Recovery(JobTable& table, uint64_t job) : table_(&table), job_(job) {}
+    Recovery(const Recovery&) = delete;
+    Recovery& operator=(const Recovery&) = delete;
+    ~Recovery();
+
+   private:
+    JobTable* table_;
+    uint64_t job_;
+  };
 
   explicit JobTable(StateMutex& mutex) : mutex_(mutex) {}
 
@@ -46,6 +66,15 @@ class JobTable {
   /// The job is among those that wait from now on; its reason says why.
   void wait_for_recovery(StoredJob job) HYADES_REQUIRES(state_lock);
   void no_longer_waits(uint64_t job) HYADES_REQUIRES(state_lock) { waiting_.erase(job); }
+  /// What waits says `reason` from now on.
+  void still_waits(uint64_t job, const std::string& reason) HYADES_REQUIRES(state_lock);
+  /// Jobs that are being recovered: nobody else may recover, cancel or remove them meanwhile.
+  const std::map<uint64_t, Recovering>& recovering() const HYADES_REQUIRES(state_lock) {
+    return recovering_;
+  }
+  /// Lets the caller recover the job; null where somebody does so already.
+  std::unique_ptr<Recovery> begin_recovery(uint64_t job, Recovering what)
+      HYADES_REQUIRES(state_lock);
 
   /// The number of the frame that was last finished: it grows over all jobs and runs of the
   /// coordinator.
@@ -64,6 +93,7 @@ class JobTable {
   StateMutex& mutex_;
   Jobs jobs_ HYADES_GUARDED_BY(state_lock);
   std::map<uint64_t, StoredJob> waiting_ HYADES_GUARDED_BY(state_lock);
+  std::map<uint64_t, Recovering> recovering_ HYADES_GUARDED_BY(state_lock);
   std::set<uint64_t> leaving_
       HYADES_GUARDED_BY(state_lock);  ///< taken out, but their log is still open
   core::CondVar left_;

@@ -249,6 +249,39 @@ TEST_F(LongRecovery, AfterAStartHoldsNobodyUp) {
   expect_others_served([&] { return world.get(job).job().reason().empty(); });
 }
 
+/// Looking at what a job has written takes its time too.
+TEST_F(NeverFreezes, WhileTheOutputsOfARetriedJobAreLookedAt) {
+  const uint64_t job = ended_job();
+  const uint64_t other = ended_job();
+  trouble->of_outputs(Trouble::Kind::waits);
+  clients.emplace_back([&] { EXPECT_TRUE(retry(job).ok()); });
+  ASSERT_TRUE(eventually([&] { return trouble->waiting() > 0; }));
+  EXPECT_TRUE(remove(other, 1500ms).ok());
+  world.submit(1);
+  // Nobody takes it away meanwhile, or up once more.
+  EXPECT_EQ(remove(job).error_code(), grpc::StatusCode::UNAVAILABLE);
+  EXPECT_EQ(retry(job).error_code(), grpc::StatusCode::UNAVAILABLE);
+  EXPECT_EQ(cancel(job).error_code(), grpc::StatusCode::UNAVAILABLE);
+  trouble->of_outputs(Trouble::Kind::none);
+  for (std::thread& client : clients) client.join();
+  clients.clear();
+  EXPECT_TRUE(cancel(job).ok());
+}
+
+TEST_F(NeverFreezes, AStartWhileTheOutputsOfAJobAreLookedAt) {
+  const uint64_t job = world.submit(1);
+  world.options.recovery_time = 100ms;
+  world.stop();
+  trouble->of_outputs(Trouble::Kind::waits);
+  world.start();
+  EXPECT_NE(world.get(job).job().reason().find("has just been started"), std::string::npos);
+  EXPECT_EQ(cancel(job).error_code(), grpc::StatusCode::UNAVAILABLE);
+  world.submit(1);
+  trouble->of_outputs(Trouble::Kind::none);
+  EXPECT_TRUE(eventually([&] { return world.get(job).job().reason().empty(); }));
+  EXPECT_TRUE(cancel(job).ok());
+}
+
 /// What others' jobs need of the background is done beside it.
 TEST_F(LongRecovery, OfManyHoldsUpNobodysNewJob) {
   std::vector<uint64_t> held;

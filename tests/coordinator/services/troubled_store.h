@@ -24,6 +24,12 @@ class Trouble {
   void of_frames(Kind kind) { set(frames_, kind); }
   void of_outputs(Kind kind) { set(outputs_, kind); }
   void of_states(Kind kind) { set(states_, kind); }
+  /// How many calls wait.
+  int waiting() const {
+    const std::lock_guard lock(mutex_);
+    return waiting_;
+  }
+
   /// How many calls were waiting at once at most.
   int most_waiting() const {
     const std::lock_guard lock(mutex_);
