@@ -11,6 +11,7 @@
 #include "coordinator/film_store/log_names.h"
 #include "coordinator/film_store/segment.h"
 #include "core/base/failpoint.h"
+#include "core/base/parallel.h"
 
 namespace hyades::coordinator {
 namespace {
@@ -56,7 +57,9 @@ Result<std::unique_ptr<FilmLog>> FilmLog::open(const std::string& folder, const 
   log->lock_ = std::move(*lock);
   if (Status s = log->open_guard(key); !s) return s.error();
   if (log->options_.threaded) {
-    log->thread_ = std::thread([self = log.get()] { self->commit_loop(); });
+    auto thread = core::start_thread([self = log.get()] { self->commit_loop(); });
+    if (!thread) return thread.error();
+    log->thread_ = std::move(*thread);
   }
   return log;
 }

@@ -10,6 +10,7 @@
 
 #include "core/base/failpoint.h"
 #include "core/base/overloaded.h"
+#include "core/base/parallel.h"
 #include "core/film/film_codec.h"
 
 namespace hyades::coordinator {
@@ -141,7 +142,9 @@ core::Status FilmStore::start(int32_t tile_size) {
     auto written = log_->append(encode_cut({set_.region, tile_size, set_.samples}));
     if (!written) return written.error();
   }
-  thread_ = std::thread([this] { run(); });
+  auto thread = core::start_thread([this] { run(); });
+  if (!thread) return thread.error();
+  thread_ = std::move(*thread);
   return {};
 }
 

@@ -10,6 +10,7 @@
 #include <string>
 #include <system_error>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include "core/base/fp_mode.h"
@@ -109,6 +110,14 @@ Status parallel_for(size_t count, int threads, const std::function<void(size_t)>
   loop.run();
   for (std::thread& helper : helpers) helper.join();
   return loop.status();
+}
+
+Result<std::thread> start_thread(std::function<void()> body) {
+  try {
+    return std::thread(std::move(body));
+  } catch (const std::system_error& none) {
+    return Error{"the system gives no more threads: " + none.code().message()};
+  }
 }
 
 }  // namespace hyades::core

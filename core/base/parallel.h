@@ -4,6 +4,7 @@
 #include <functional>
 #include <optional>
 #include <string_view>
+#include <thread>
 
 #include "core/base/result.h"
 
@@ -24,5 +25,8 @@ std::optional<int> parse_cpu_quota(std::string_view cpu_max);
 /// whatever the number of threads.
 Status parallel_for(size_t count, int threads, const std::function<void(size_t)>& body,
                     size_t grain = 1);
+
+/// A thread that runs `body`. An error where the system gives no more of them.
+Result<std::thread> start_thread(std::function<void()> body);
 
 }  // namespace hyades::core

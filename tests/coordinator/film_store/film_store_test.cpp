@@ -1,7 +1,11 @@
 // Films of finished frames leave the log when the disk is short.
 #include <gtest/gtest.h>
+#include <sys/resource.h>
+#include <unistd.h>
 
 #include <condition_variable>
+#include <cstdlib>
+#include <fstream>
 #include <mutex>
 #include <set>
 
@@ -141,6 +145,47 @@ TEST(FilmStore, EachOutageOfTheDiskIsTold) {
     EXPECT_TRUE(kept.is_told_of_trouble(1, tile(2 * outage + 1))) << outage;
     files.set_capacity(UINT64_MAX);
   }
+}
+
+/// Of a store that nobody gives anything.
+class Idle final : public FilmStore::Listener {
+ public:
+  void persisted(RecordId) override {}
+  void not_persisted(RecordId, const std::string&) override {}
+  void outgrown(int32_t, const std::string&) override {}
+  void try_again() override {}
+  void storage_failed(const std::string&) override {}
+  void drained() override {}
+};
+
+/// Lets the process have `more` bytes of address space than it has.
+void limit_memory(uint64_t more) {
+  std::ifstream statm("/proc/self/statm");
+  uint64_t pages = 0;
+  statm >> pages;
+  rlimit limit{};
+  getrlimit(RLIMIT_AS, &limit);
+  limit.rlim_cur = pages * static_cast<uint64_t>(sysconf(_SC_PAGESIZE)) + more;
+  setrlimit(RLIMIT_AS, &limit);
+}
+
+/// Each open job has threads, and a thread a stack: it must not end the process where there is
+/// none.
+TEST(FilmStoreDeathTest, WithoutMoreThreadsItIsNotOpenedAndMayBeLater) {
+  const auto try_it = [] {
+    FaultyFiles files;
+    Idle idle;
+    FilmStoreOptions options;
+    options.folder = "films";
+    options.files = &files;
+    FilmStore films({{1}, {0, 0, 16, 16}, kFilmSamples}, options, idle);
+    limit_memory(uint64_t{1} << 20U);
+    const auto refused = films.open();
+    limit_memory(uint64_t{1} << 36U);
+    if (refused || refused.error().message.find("no more threads") == std::string::npos) return 1;
+    return films.open().ok() && films.start(16).ok() ? 0 : 2;
+  };
+  EXPECT_EXIT(std::_Exit(try_it()), testing::ExitedWithCode(0), "");
 }
 
 }  // namespace
