@@ -22,8 +22,9 @@ constexpr size_t kMostKeptBytes = size_t{128} << 20U;
 /// A picture of a frame in work is not made more often, however many samples have come.
 constexpr std::chrono::milliseconds kFreshFor{1000};
 /// Copies of films at a time: one of a large frame is a gigabyte.
-constexpr int kMostFilms = 2;
+constexpr size_t kMostFilms = 2;
 constexpr size_t kMostFrames = 1000;
+constexpr int kMostFramesOfOne = 500;
 
 bool is_over(const v1::Frame& frame) { return frame.state() == v1::FRAME_STATE_DONE; }
 
@@ -170,13 +171,20 @@ bool PicturesApi::enqueue(const Asked& asked, const Asker& asker) {
   const core::MutexLock lock(mutex_);
   const auto known = wanted_.find(id);
   if (known == wanted_.end()) {
-    if (wanted_.size() >= kMostFrames) return false;
-    queue_.push_back(id);
+    if (!may_wait(asker.owner.name)) return false;
+    queue_.emplace_back(id, asker.owner.name);
   } else if (!may_want(known->second, asked, asker.owner.name)) {
     return false;
   }
   wanted_[id][asked].push_back(asker);
   return true;
+}
+
+/// Whether the owner may wait for one more frame.
+bool PicturesApi::may_wait(const std::string& owner) const {
+  const auto own = std::count_if(queue_.begin(), queue_.end(),
+                                 [&](const auto& one) { return one.second == owner; });
+  return wanted_.size() < kMostFrames && (owner.empty() || own < kMostFramesOfOne);
 }
 
 /// Whether the owner may wait for one more of the frame: what somebody waits for already is free.
@@ -190,17 +198,32 @@ bool PicturesApi::may_want(const Wanted& wanted, const Asked& asked, const std::
 }
 
 void PicturesApi::begin_some() {
-  for (;;) {
-    FrameId id;
-    {
-      const core::MutexLock lock(mutex_);
-      if (queue_.empty() || films_ >= kMostFilms) return;
-      ++films_;
-      id = queue_.front();
-      queue_.pop_front();
-    }
-    take_film(id);
+  while (const auto id = begin_next()) take_film(*id);
+}
+
+/// The frame whose turn it is; none: as many are in work as may be, or their callers'.
+std::optional<PicturesApi::FrameId> PicturesApi::begin_next() {
+  const core::MutexLock lock(mutex_);
+  if (in_work_.size() >= kMostFilms) return std::nullopt;
+  const auto has_one = [&](const std::string& owner) {
+    return !owner.empty() && std::any_of(in_work_.begin(), in_work_.end(), [&](const auto& one) {
+      return one.second.owner == owner;
+    });
+  };
+  const Clock::time_point now = Clock::now();
+  auto best = queue_.end();
+  double least = 0;
+  for (auto one = queue_.begin(); one != queue_.end(); ++one) {
+    const double used = shares_.used(one->second, now);
+    if (has_one(one->second) || (best != queue_.end() && used >= least)) continue;
+    best = one;
+    least = used;
   }
+  if (best == queue_.end()) return std::nullopt;
+  const FrameId id = best->first;
+  in_work_[id] = {best->second, now};
+  queue_.erase(best);
+  return id;
 }
 
 void PicturesApi::take_film(FrameId id) {
@@ -301,7 +324,11 @@ void PicturesApi::end(FrameId id,
   }
   {
     const core::MutexLock lock(mutex_);
-    --films_;
+    const auto over = in_work_.extract(id);
+    const InWork& work = over.mapped();
+    const Clock::time_point now = Clock::now();
+    if (!work.owner.empty())
+      shares_.use(work.owner, std::chrono::duration<double>(now - work.since).count(), now);
   }
   (void)pool_.submit([this] { begin_some(); });
 }

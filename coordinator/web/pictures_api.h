@@ -17,14 +17,16 @@
 #include "coordinator/web/router.h"
 #include "core/base/mutex.h"
 #include "farm/byte_budget.h"
+#include "farm/fair_shares.h"
 #include "farm/thread_pool.h"
 
 namespace hyades::coordinator {
 
 /// Frames as they are now: of the film in mid-render, of a finished file afterwards. What was made
 /// once is kept for all who ask. A film is copied for all that is asked of its frame together, at
-/// most once a second, and two films at a time, whoever asks for how many. Pictures that somebody
-/// takes his time to read count until he has them, and where they are too many no more are made.
+/// most once a second, and two films at a time, for different callers: next is for whom lately
+/// least time was spent. Pictures that somebody takes his time to read count until he has them, and
+/// where they are too many no more are made.
 class PicturesApi {
  public:
   /// Of all pictures together, kept or on their way, and of those that were made for one caller.
@@ -89,6 +91,8 @@ class PicturesApi {
   WebReply of_file(const Asked& asked, const farm::ByteBudget::Owner& owner, const FrameNow& now);
   void want(const Asked& asked, const Asker& asker);
   bool enqueue(const Asked& asked, const Asker& asker);
+  bool may_wait(const std::string& owner) const HYADES_REQUIRES(mutex_);
+  std::optional<FrameId> begin_next() HYADES_EXCLUDES(mutex_);
   static bool may_want(const Wanted& wanted, const Asked& asked, const std::string& owner);
   void begin_some();
   void take_film(FrameId id);
@@ -108,10 +112,16 @@ class PicturesApi {
   std::map<Asked, Kept::iterator> index_ HYADES_GUARDED_BY(mutex_);
   size_t kept_bytes_ HYADES_GUARDED_BY(mutex_) = 0;
   std::map<FrameId, Wanted> wanted_ HYADES_GUARDED_BY(mutex_);
-  std::deque<FrameId> queue_
-      HYADES_GUARDED_BY(mutex_);             ///< of frames whose films nobody fetches yet
-  int films_ HYADES_GUARDED_BY(mutex_) = 0;  ///< that are being fetched or shown
-  farm::ThreadPool pool_{2, 1000};           ///< ends first: its threads use all of the above
+  /// Frames whose films nobody fetches yet, and who has asked for them first.
+  std::deque<std::pair<FrameId, std::string>> queue_ HYADES_GUARDED_BY(mutex_);
+  struct InWork {
+    std::string owner;
+    Clock::time_point since;
+  };
+  /// Those whose films are being fetched or shown.
+  std::map<FrameId, InWork> in_work_ HYADES_GUARDED_BY(mutex_);
+  farm::FairShares shares_ HYADES_GUARDED_BY(mutex_);  ///< seconds of films in work, of callers
+  farm::ThreadPool pool_{2, 1000, 1};  ///< ends first: its threads use all of the above
 };
 
 }  // namespace hyades::coordinator

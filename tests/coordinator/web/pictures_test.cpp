@@ -2,11 +2,11 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <atomic>
 #include <future>
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -40,7 +40,11 @@ class UnreadPictures : public ::testing::Test {
     job_ = std::to_string(world_.farm.submit(1));
     ScriptedWorker::Script script = world_.farm.script();
     if (!finished) {
-      script.meddle = [this](ScriptedWorker&, const v1::LeasedUnit&) { return units_++ == 0; };
+      script.threads = 64;
+      script.meddle = [this](ScriptedWorker&, const v1::LeasedUnit& leased) {
+        const std::lock_guard lock(begun_mutex_);
+        return begun_.insert(leased.job()).second;
+      };
     }
     worker_.emplace(world_.farm.address, script);
     const std::string path = "/api/v1/jobs/" + job_;
@@ -53,9 +57,12 @@ class UnreadPictures : public ::testing::Test {
   }
 
   void ask(const std::string& who, int width, Answer answer) const {
+    ask(who, job_, width, answer);
+  }
+  void ask(const std::string& who, const std::string& job, int width, const Answer& answer) const {
     WebRequest request;
     request.method = "GET";
-    request.path = {"api", "v1", "jobs", job_, "frames", "1", "picture"};
+    request.path = {"api", "v1", "jobs", job, "frames", "1", "picture"};
     request.query = {{"format", "half"}, {"width", std::to_string(width)}};
     request.caller.name = who;
     router_.answer(request, answer);
@@ -92,7 +99,8 @@ class UnreadPictures : public ::testing::Test {
 
   WebWorld world_;
   std::string job_;
-  std::atomic<int> units_ = 0;
+  std::mutex begun_mutex_;
+  std::set<uint64_t> begun_;  ///< jobs of which a unit was delivered
   std::optional<ScriptedWorker> worker_;
   const std::shared_ptr<farm::ByteBudget> held_ =
       std::make_shared<farm::ByteBudget>(kMost, kMostOfOne);
@@ -147,14 +155,50 @@ TEST_F(UnreadPictures, OfOneFrameAFewAreWantedAtATime) {
   constexpr size_t kRefused = kAsked - PicturesApi::kMostOfFrameOfOne;
   for (size_t i = 0; i < kAsked; ++i) ask("ada", 16 + static_cast<int>(i), note(adas));
   const bool refused = answered(kRefused, 0);
+  const std::vector<unsigned> first = [&] {
+    const std::lock_guard lock(mutex);
+    return adas;
+  }();
   ask("bob", 16, note(bobs));
   ask("bob", 80, note(bobs));
   go.set_value();
   ASSERT_TRUE(refused);
-  EXPECT_EQ(adas, std::vector<unsigned>(kRefused, 503));
+  EXPECT_EQ(first, std::vector<unsigned>(kRefused, 503));
   ASSERT_TRUE(answered(kAsked, 2));
   EXPECT_EQ(bobs, (std::vector<unsigned>{200, 200}));
   EXPECT_EQ(std::count(adas.begin(), adas.end(), 200U), PicturesApi::kMostOfFrameOfOne);
+}
+
+/// Films that take long to come keep others' waiting where different callers want them, and no
+/// more.
+TEST_F(UnreadPictures, OneCallerWaitsForOneFilmAtATime) {
+  start(false);
+  std::vector<std::string> jobs = {job_};
+  while (jobs.size() < 3) jobs.push_back(std::to_string(world_.farm.submit(1)));
+  for (const std::string& job : jobs) {
+    ASSERT_TRUE(eventually([&] {
+      return world_.client->get("/api/v1/jobs/" + job + "/frames/1/picture").status == 200;
+    }));
+  }
+  std::promise<void> go;
+  const std::shared_future<void> gone(go.get_future());
+  for (size_t i = 0; i < 2; ++i) {
+    const grpc::Status held = world_.farm.controller->queries().film_alone(
+        std::stoull(jobs[i]), 1, [gone](const auto&...) { gone.wait(); });
+    ASSERT_TRUE(held.ok()) << held.error_message();
+  }
+  std::promise<unsigned> bobs;
+  std::vector<std::promise<unsigned>> adas(2);
+  for (size_t i = 0; i < 2; ++i) {
+    ask("ada", jobs[i], 16, [&, i](const WebReply& reply) { adas[i].set_value(reply.status); });
+  }
+  ask("bob", jobs[2], 16, [&](const WebReply& reply) { bobs.set_value(reply.status); });
+  auto bob = bobs.get_future();
+  const bool served = bob.wait_for(20s) == std::future_status::ready;
+  go.set_value();
+  ASSERT_TRUE(served) << "ada's films were all that were waited for";
+  EXPECT_EQ(bob.get(), 200U);
+  for (std::promise<unsigned>& ada : adas) EXPECT_EQ(ada.get_future().get(), 200U);
 }
 
 }  // namespace
