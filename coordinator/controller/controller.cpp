@@ -123,7 +123,8 @@ core::Result<std::unique_ptr<Controller>> Controller::open(const ControllerOptio
     const StateLock lock(parts.context.mutex);
     // From here on workers can come: to recover many jobs may take longer than they are given.
     // Where no job is open nobody holds anything.
-    if (*incarnation > 1 && !parts.jobs.all().empty()) parts.sessions.begin_adoption();
+    const bool any = !parts.jobs.all().empty() || !parts.jobs.waiting().empty();
+    if (*incarnation > 1 && any) parts.sessions.begin_adoption();
   }
   parts.clock.add(0, [&parts] {
     if (!parts.context.stop) parts.tick();
