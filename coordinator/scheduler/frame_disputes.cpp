@@ -49,10 +49,9 @@ std::optional<Extent> FrameLedger::next_check(Voice voice, const MayTry& may_try
     const bool known = std::any_of(d.opinions.begin(), d.opinions.end(),
                                    [&](const Opinion& o) { return o.voice == voice; });
     if (known || being_checked(d.extent)) continue;
-    const Blame* blame = find_blame(d.extent);
-    if (blame == nullptr) return d.extent;
+    if (!failed_.contains(d.extent)) return d.extent;
     // Those who have said what they think are no help: who failed it may be the only one left.
-    if (may_try(blame->workers, voices_of(d))) return d.extent;
+    if (may_try(failed_.workers(d.extent), voices_of(d))) return d.extent;
   }
   return std::nullopt;
 }

@@ -27,6 +27,7 @@ FrameLedger::FrameLedger(const std::vector<uint32_t>& tile_order, uint32_t batch
 void FrameLedger::hold(const Extent& e, const HeldRecord& record) {
   free_ -= BatchMap::count_free(held_, leased_, e.tile, e.batches);
   held_.set(e.tile, e.batches);
+  free_overlapping(e);
   records_[e.tile].push_back(record);
   if (record.pending == RecordId{}) durable_ += e.batches.count;
 }
@@ -85,6 +86,16 @@ bool FrameLedger::may_assign(const Extent& e, Voice voice) const {
 void FrameLedger::lease_bits(const Extent& e) {
   free_ -= BatchMap::count_free(held_, leased_, e.tile, e.batches);
   leased_.set(e.tile, e.batches);
+  free_overlapping(e);
+}
+
+/// A part of failed units that wait is free no more: the rest is ordinary work.
+void FrameLedger::free_overlapping(const Extent& e) {
+  for (const Extent& failed : failed_.take_overlapping(e)) {
+    if (BatchMap::first_free(held_, leased_, failed.tile, failed.batches)) {
+      open_.push_front(failed);
+    }
+  }
 }
 
 void FrameLedger::unlease_bits(const Extent& e) {
@@ -93,21 +104,9 @@ void FrameLedger::unlease_bits(const Extent& e) {
 }
 
 std::optional<Extent> FrameLedger::next_retry(const MayTry& may_try) {
-  for (size_t i = 0; i < retries_.size();) {
-    const Extent e = retries_[i];
-    if (!all_free(e)) {
-      // A late film has brought a part of it: the rest is ordinary work.
-      open_.push_front(e);
-      retries_.erase(retries_.begin() + static_cast<ptrdiff_t>(i));
-      continue;
-    }
-    if (may_try(find_blame(e)->workers, {})) {
-      retries_.erase(retries_.begin() + static_cast<ptrdiff_t>(i));
-      return e;
-    }
-    ++i;
-  }
-  return std::nullopt;
+  const std::optional<Extent> e = failed_.first(may_try);
+  if (e) failed_.take_overlapping(*e);
+  return e;
 }
 
 std::optional<Extent> FrameLedger::cut_open(const Extent& front, uint32_t run) {
@@ -124,11 +123,7 @@ std::optional<Extent> FrameLedger::cut_open(const Extent& front, uint32_t run) {
 
 bool FrameLedger::has_work(const MayTry& may_try) const {
   if (waits_for_checks()) return false;
-  uint64_t barred = 0;
-  for (const Extent& e : retries_) {
-    if (all_free(e) && !may_try(find_blame(e)->workers, {})) barred += e.batches.count;
-  }
-  return free_ > barred;
+  return free_ > failed_.waiting_batches() || failed_.first(may_try).has_value();
 }
 
 Assignment& FrameLedger::assign(const Extent& e, const Holder& holder, uint64_t serial) {
@@ -165,8 +160,8 @@ void FrameLedger::release(const Extent& e, const LeaseId& lease) {
   if (!assignment->holders.empty()) return;
   assignments_.erase(key(e));
   unlease_bits(e);
-  if (find_blame(e) != nullptr && all_free(e)) {
-    if (std::find(retries_.begin(), retries_.end(), e) == retries_.end()) retries_.push_back(e);
+  if (failed_.contains(e) && all_free(e)) {
+    failed_.wait(e);
   } else {
     open_.push_front(e);
   }
@@ -181,52 +176,13 @@ std::vector<Holder> FrameLedger::end_assignment(const Extent& e) {
   return holders;
 }
 
-const FrameLedger::Blame* FrameLedger::find_blame(const Extent& e) const {
-  for (const Blame& b : blamed_) {
-    if (b.extent == e) return &b;
-  }
-  return nullptr;
-}
-
-void FrameLedger::blame(const Extent& e, WorkerId worker, Voice voice, const std::string& reason) {
-  for (Blame& b : blamed_) {
-    if (b.extent != e) continue;
-    b.workers.push_back(worker);
-    b.voices.push_back(voice);
-    b.reason = reason;
-    return;
-  }
-  blamed_.push_back({e, {worker}, {voice}, reason});
-}
-
-std::vector<WorkerId> FrameLedger::blamed(const Extent& e) const {
-  const Blame* blame = find_blame(e);
-  return blame == nullptr ? std::vector<WorkerId>() : blame->workers;
-}
-
-std::vector<Voice> FrameLedger::blamed_voices(const Extent& e) const {
-  const Blame* blame = find_blame(e);
-  return blame == nullptr ? std::vector<Voice>() : blame->voices;
-}
-
-FrameLedger::Failures FrameLedger::take_blame(const Extent& e) {
-  const auto found =
-      std::find_if(blamed_.begin(), blamed_.end(), [&](const Blame& b) { return b.extent == e; });
-  if (found == blamed_.end() || std::find(retries_.begin(), retries_.end(), e) != retries_.end()) {
-    return {};
-  }
-  Failures failures{std::move(found->workers), std::move(found->reason)};
-  blamed_.erase(found);
-  std::sort(failures.workers.begin(), failures.workers.end());
-  failures.workers.erase(std::unique(failures.workers.begin(), failures.workers.end()),
-                         failures.workers.end());
-  return failures;
-}
-
 std::string FrameLedger::audit() const {
   BatchMap reachable(tile_count_, batches_);
   for (const Extent& e : open_) reachable.set(e.tile, e.batches);
-  for (const Extent& e : retries_) reachable.set(e.tile, e.batches);
+  for (const Extent& e : failed_.waiting()) {
+    if (!all_free(e)) return fmt::format("a failed unit of tile {} waits and is not free", e.tile);
+    reachable.set(e.tile, e.batches);
+  }
   uint64_t free = 0;
   uint64_t held = 0;
   uint64_t recorded = 0;

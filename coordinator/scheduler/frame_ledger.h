@@ -4,7 +4,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <deque>
-#include <functional>
 #include <map>
 #include <optional>
 #include <string>
@@ -12,17 +11,11 @@
 #include <vector>
 
 #include "coordinator/scheduler/batch_map.h"
+#include "coordinator/scheduler/failed_units.h"
 #include "coordinator/scheduler/ids.h"
 #include "core/film/unit.h"
 
 namespace hyades::coordinator {
-
-/// A unit within its frame: a tile by its index in the grid.
-struct Extent {
-  uint32_t tile = 0;
-  core::BatchRange batches;
-  friend bool operator==(const Extent&, const Extent&) = default;
-};
 
 /// Who renders a unit now.
 struct Holder {
@@ -37,10 +30,6 @@ struct Assignment {
   TimePoint since;      ///< who has it first has had it since then
   std::vector<Holder> holders;
 };
-
-/// Whether a worker may try a unit that has failed with these workers, and about which these voices
-/// have said what they think.
-using MayTry = std::function<bool(const std::vector<WorkerId>&, const std::vector<Voice>&)>;
 
 /// A film that counts, or will once it is durable.
 struct HeldRecord {
@@ -165,7 +154,7 @@ class FrameLedger {
   bool has_work(const MayTry& may_try) const;
 
   /// Whether a unit has failed and waits for somebody who may try it.
-  bool any_retry() const { return !retries_.empty(); }
+  bool any_retry() const { return failed_.any_waits(); }
 
   /// Whether the extent can be assigned to a worker with this voice that has it already: all of it
   /// is free, or another voice has to render it too and nobody does.
@@ -184,18 +173,12 @@ class FrameLedger {
 
   // Blame.
 
-  /// The worker, which has this voice, could not render the unit, for this reason.
-  void blame(const Extent& e, WorkerId worker, Voice voice, const std::string& reason);
-  /// With whom this unit has failed, one entry per failure.
-  std::vector<WorkerId> blamed(const Extent& e) const;
-  /// The voices of those with whom it has failed, one entry per failure.
-  std::vector<Voice> blamed_voices(const Extent& e) const;
-  struct Failures {
-    std::vector<WorkerId> workers;  ///< that failed a unit, each once
-    std::string reason;             ///< of the last failure
-  };
+  /// The worker, which has this voice, could not render the unit.
+  void blame(const Extent& e, WorkerId worker, Voice voice) { failed_.blame(e, worker, voice); }
+  /// The units that have failed.
+  const FailedUnits& failed() const { return failed_; }
   /// The unit has been rendered after all: who had failed it. They are forgotten here.
-  Failures take_blame(const Extent& e);
+  std::vector<WorkerId> take_blame(const Extent& e) { return failed_.forgive(e); }
 
   // Conflicts (frame_disputes.cpp).
 
@@ -243,13 +226,6 @@ class FrameLedger {
   /// Units that wait for another voice, of one frame; it takes no new ones then.
   static constexpr size_t kMostToCheck = 64;
 
-  struct Blame {
-    Extent extent;
-    std::vector<WorkerId> workers;
-    std::vector<Voice> voices;  ///< theirs
-    std::string reason;
-  };
-
   /// How far a tile is, of a job that judges its tiles.
   struct TileRounds {
     uint32_t planned = 0;
@@ -266,7 +242,7 @@ class FrameLedger {
   std::optional<Extent> cut_open(const Extent& front, uint32_t run);
   void lease_bits(const Extent& e);
   void unlease_bits(const Extent& e);
-  const Blame* find_blame(const Extent& e) const;
+  void free_overlapping(const Extent& e);
 
   bool being_checked(const Extent& e) const { return leased_.count(e.tile, e.batches) != 0; }
 
@@ -283,8 +259,7 @@ class FrameLedger {
   /// Runs that may hold free batches, in the order of leasing. Every free batch is in here or in a
   /// failed unit; what is not free any more is left out when it is taken.
   std::deque<Extent> open_;
-  std::vector<Extent> retries_;  ///< failed units that wait for another try
-  std::vector<Blame> blamed_;
+  FailedUnits failed_;
   std::vector<Dispute> disputes_;     ///< oldest first
   std::map<uint32_t, bool> voiding_;  ///< suspect tiles, and whether newly_suspect() named them
   std::map<uint64_t, Assignment> assignments_;                     ///< by key()

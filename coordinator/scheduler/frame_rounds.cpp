@@ -79,9 +79,8 @@ void FrameLedger::begin_rounds_again(uint32_t tile) {
   total_ -= fewer;
   free_ -= fewer;
   rounds = {rounds_.front()};
-  const auto is_of_tile = [tile](const Extent& e) { return e.tile == tile; };
-  std::erase_if(open_, is_of_tile);
-  std::erase_if(retries_, is_of_tile);
+  std::erase_if(open_, [tile](const Extent& e) { return e.tile == tile; });
+  failed_.take_overlapping({tile, {0, batches_}});
 }
 
 }  // namespace hyades::coordinator

@@ -13,8 +13,14 @@
 namespace hyades::coordinator {
 namespace {
 
-/// More than any worker can use; a wish beyond it is a mistake or malice.
-constexpr uint32_t kMaxWanted = 1U << 16;
+/// A worker asks for two units per thread; wishes beyond twice as many, and some, are mistakes or
+/// malice.
+constexpr uint32_t kMaySpare = 64;
+/// Units that a worker has at most, with those whose films nobody can take now: as many as it may
+/// bring along when it comes anew.
+constexpr uint32_t kMostInHand = 20'000;
+/// Units of one lease: what ends a unit looks through all of its lease.
+constexpr size_t kMostOfALease = 64;
 /// How long a worker waits that came too late for a frame.
 constexpr Duration kLookAgain = std::chrono::seconds(1);
 /// Pictures of frames in work are asked for again about every second by who looks at them.
@@ -41,7 +47,10 @@ auto judge_of(const ScheduledWorkers& workers, const ScheduledJob& job, WorkerId
 void Granting::on(const WorkRequested& e) {
   Worker* worker = workers_.find(e.worker);
   if (worker == nullptr) return;
-  worker->wanted = std::min(kMaxWanted, worker->wanted + std::min(e.units, kMaxWanted));
+  const uint64_t most = std::max<uint64_t>(kMaySpare, 4 * uint64_t{worker->threads});
+  const uint64_t room = kMostInHand - std::min(worker->units, kMostInHand);
+  const uint64_t wish = std::min({uint64_t{worker->wanted} + e.units, most, room});
+  worker->wanted = static_cast<uint32_t>(wish);
   if (may_lease()) serve(e.worker, *worker, true);
   workers_.update_waiting(e.worker, *worker);
 }
@@ -239,7 +248,8 @@ bool Granting::grant_from(const FramePlace& place, WorkerId id, Worker& worker, 
   slot.last_leased = step_.now;
   if (grant_check(place, id, worker, allowed)) return true;
   std::vector<Extent> extents;
-  while (extents.size() < (ahead ? 1 : worker.wanted)) {
+  const size_t most = ahead ? 1 : std::min<size_t>(worker.wanted, kMostOfALease);
+  while (extents.size() < most) {
     const auto extent =
         slot.ledger->next(allowed, [&](uint32_t tile) { return run_length_of(job, slot, tile); });
     if (!extent) break;

@@ -89,7 +89,8 @@ bool HedgedCopies::grant_of(Units& units, size_t holders, WorkerId id, Worker& w
     // What is checked is for those who were not heard.
     const std::vector<Voice> heard = ledger.heard(candidate.extent);
     if (std::find(heard.begin(), heard.end(), worker.voice) != heard.end()) continue;
-    if (!workers_.may_try(job, id, worker, ledger.blamed(candidate.extent), heard)) continue;
+    if (!workers_.may_try(job, id, worker, ledger.failed().workers(candidate.extent), heard))
+      continue;
     const double late = seconds(step_.now - candidate.since) - late_after(job, candidate.extent);
     if (late < 0) continue;
     // Those who have the scene come first; whoever has to load it takes one copy.

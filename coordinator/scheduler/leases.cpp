@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <set>
 #include <utility>
 
 #include <fmt/format.h>
@@ -67,8 +68,9 @@ void Leases::grant(WorkerId id, Worker& worker, const FramePlace& place, std::ve
   step_.say(std::move(action));
   films_.take(job, place.frame());
   jobs_.count_running(job, static_cast<int64_t>(units.size()));
+  worker.units += static_cast<uint32_t>(units.size());
   leases_.emplace(lease.number, Entry{id, job.id, place.slot, std::move(units), deadline});
-  worker.leases.push_back(lease.number);
+  worker.leases.insert(lease.number);
   ++job.workers[id];
   deadlines_.emplace(deadline, lease.number);
 }
@@ -80,7 +82,7 @@ void Leases::renew(WorkerId worker, const LeaseId& id) {
 }
 
 void Leases::release_all(const Worker& worker, bool revoke) {
-  const std::vector<uint64_t> numbers = worker.leases;
+  const std::set<uint64_t> numbers = worker.leases;
   for (const uint64_t number : numbers) release(number, revoke);
 }
 
@@ -96,12 +98,6 @@ void Leases::end_assignment(const ScheduledJob& job, FrameSlot& slot, const Exte
 std::optional<TimePoint> Leases::next_deadline() const {
   if (deadlines_.empty()) return std::nullopt;
   return deadlines_.top().first;
-}
-
-uint32_t Leases::units_of(const Worker& worker) const {
-  size_t units = 0;
-  for (const uint64_t number : worker.leases) units += leases_.at(number).units.size();
-  return static_cast<uint32_t>(units);
 }
 
 void Leases::expire() {
@@ -123,7 +119,9 @@ void Leases::release(uint64_t number, bool revoke, bool expired) {
   const auto it = leases_.find(number);
   const Entry lease = std::move(it->second);
   leases_.erase(it);
-  std::erase(workers_.find(lease.worker)->leases, number);
+  Worker& worker = *workers_.find(lease.worker);
+  worker.leases.erase(number);
+  worker.units -= static_cast<uint32_t>(lease.units.size());
   ScheduledJob& job = *jobs_.find(lease.job);
   FrameSlot& slot = job.slots[lease.slot];
   const LeaseId id = id_of(number);
@@ -149,9 +147,11 @@ void Leases::drop_unit(const LeaseId& id, const Extent& e) {
   Entry* lease = find(id);
   if (lease == nullptr || std::erase(lease->units, e) == 0) return;
   jobs_.count_running(*jobs_.find(lease->job), -1);
+  Worker& worker = *workers_.find(lease->worker);
+  --worker.units;
   if (!lease->units.empty()) return;
   leave_job(*jobs_.find(lease->job), lease->worker);
-  std::erase(workers_.find(lease->worker)->leases, id.number);
+  worker.leases.erase(id.number);
   leases_.erase(id.number);
 }
 
@@ -203,8 +203,7 @@ std::string Leases::audit(std::map<std::pair<JobId, uint32_t>, size_t>& out) con
   for (const auto& [number, lease] : leases_) {
     if (lease.units.empty()) return fmt::format("lease {} holds nothing", number);
     const Worker* worker = std::as_const(workers_).find(lease.worker);
-    if (worker == nullptr ||
-        std::count(worker->leases.begin(), worker->leases.end(), number) != 1) {
+    if (worker == nullptr || !worker->leases.contains(number)) {
       return fmt::format("lease {} is not on its worker's list", number);
     }
     const ScheduledJob* job = jobs_.find(lease.job);

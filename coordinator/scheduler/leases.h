@@ -60,8 +60,6 @@ class Leases {
   bool empty() const { return leases_.empty(); }
   /// When expire() may have something to do next.
   std::optional<TimePoint> next_deadline() const;
-  /// How many units the worker has.
-  uint32_t units_of(const Worker& worker) const;
   /// The units that the worker has under this lease; none where it has no such lease.
   std::vector<UnitInHand> units_of(WorkerId worker, const LeaseId& lease) const;
   /// All units that the worker has.

@@ -142,7 +142,8 @@ void Results::on(const UnitFailed& e) {
   if (assignment == nullptr) return;
   const Extent whole = assignment->extent;
   const Worker* worker = workers_.find(e.worker);  // whose lease it is, so that it is there
-  slot->ledger->blame(whole, e.worker, worker->voice, e.reason);
+  slot->ledger->blame(whole, e.worker, worker->voice);
+  workers_.failures(e.worker).reason = e.reason;
   leases_.end_unit(*job, *slot, *extent, e.lease);
   if (hopeless(*job, *slot, whole)) frames_.fail_or_leave(*job, *slot, e.worker, e.reason);
 }
@@ -150,12 +151,10 @@ void Results::on(const UnitFailed& e) {
 /// Whether a unit has failed with so many different voices that it is the unit's fault; or that
 /// often in all, and nobody is there whose voice is another.
 bool Results::hopeless(const ScheduledJob& job, const FrameSlot& slot, const Extent& extent) const {
-  std::vector<Voice> tried = slot.ledger->blamed_voices(extent);
-  const size_t failures = tried.size();
-  std::sort(tried.begin(), tried.end());
-  tried.erase(std::unique(tried.begin(), tried.end()), tried.end());
+  const FailedUnits& failed = slot.ledger->failed();
+  std::vector<Voice> tried = failed.voices(extent);
   if (tried.size() >= job.plan.max_attempts) return true;
-  if (failures < job.plan.max_attempts) return false;
+  if (failed.failures(extent) < job.plan.max_attempts) return false;
   // Those whose films of it are the matter are not asked again.
   if (const Dispute* dispute = slot.ledger->find_dispute(extent)) {
     for (const Opinion& o : dispute->opinions) tried.push_back(o.voice);

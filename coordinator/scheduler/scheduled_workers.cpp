@@ -86,7 +86,7 @@ Worker& ScheduledWorkers::add(const WorkerJoined& joined) {
   Class& of_it = classes_[worker.worker_class];
   of_it.name = joined.worker_class;
   ++of_it.connected;
-  if (!worker.barred) count_origin(worker, true);
+  if (!worker.barred) count_able(joined.worker, worker, true);
   return worker;
 }
 
@@ -95,7 +95,7 @@ void ScheduledWorkers::remove(WorkerId id) {
   const Worker& worker = it->second;
   if (worker.waiting != 0) waiting_.erase(worker.waiting);
   threads_ -= worker.threads;
-  if (!worker.barred) count_origin(worker, false);
+  if (!worker.barred) count_able(id, worker, false);
   const auto of_it = classes_.find(worker.worker_class);
   if (--of_it->second.connected == 0) classes_.erase(of_it);
   workers_.erase(it);
@@ -118,9 +118,14 @@ bool ScheduledWorkers::rests(WorkerId id) const {
   return given != given_back_.end() && step_.now < given->second.rests_until;
 }
 
-void ScheduledWorkers::bar(Worker& worker, bool barred) {
+void ScheduledWorkers::bar(WorkerId id, Worker& worker, bool barred) {
   if (std::exchange(worker.barred, barred) == barred) return;
-  count_origin(worker, !barred);
+  count_able(id, worker, !barred);
+}
+
+void ScheduledWorkers::forget_failures(WorkerId id) {
+  // Its reason may be asked for when others have rendered what it failed before.
+  if (const auto it = failures_.find(id); it != failures_.end()) it->second.count = 0;
 }
 
 void ScheduledWorkers::pardon(WorkerId id) {
@@ -207,20 +212,22 @@ bool ScheduledWorkers::anybody_for(const ScheduledJob& job, ClassId worker_class
   const auto it = classes_.find(worker_class);
   if (it == classes_.end() || it->second.origins.empty()) return false;
   if (!job.plan.needs.any()) return true;
-  return std::any_of(workers_.begin(), workers_.end(), [&](const auto& entry) {
-    return !entry.second.barred && entry.second.worker_class == worker_class &&
-           suits(job, entry.second);
-  });
+  const std::set<WorkerId>& able = it->second.able;
+  return std::any_of(able.begin(), able.end(),
+                     [&](WorkerId id) { return suits(job, workers_.at(id)); });
 }
 
 /// One worker more or less that may get units.
-void ScheduledWorkers::count_origin(const Worker& worker, bool one_more) {
-  std::map<Origin, uint32_t>& origins = classes_[worker.worker_class].origins;
+void ScheduledWorkers::count_able(WorkerId id, const Worker& worker, bool one_more) {
+  Class& of_it = classes_[worker.worker_class];
+  std::map<Origin, uint32_t>& origins = of_it.origins;
   if (one_more) {
+    of_it.able.insert(id);
     if (origins.empty()) ++classes_at_work_;
     ++origins[worker.origin];
     return;
   }
+  of_it.able.erase(id);
   if (const auto it = origins.find(worker.origin); --it->second == 0) origins.erase(it);
   if (origins.empty()) --classes_at_work_;
 }
@@ -245,18 +252,20 @@ bool ScheduledWorkers::suits(const ScheduledJob& job, const Worker& worker) {
 bool ScheduledWorkers::may_try(const ScheduledJob& job, WorkerId id, const Worker& worker,
                                const std::vector<WorkerId>& blamed,
                                const std::vector<Voice>& heard) const {
-  return std::find(blamed.begin(), blamed.end(), id) == blamed.end() ||
+  return !std::binary_search(blamed.begin(), blamed.end(), id) ||
          !anybody_besides(blamed, heard, job, worker.worker_class);
 }
 
 bool ScheduledWorkers::anybody_besides(const std::vector<WorkerId>& tried,
                                        const std::vector<Voice>& heard, const ScheduledJob& job,
                                        ClassId worker_class) const {
-  return std::any_of(workers_.begin(), workers_.end(), [&](const auto& entry) {
-    return !entry.second.barred && entry.second.worker_class == worker_class &&
-           suits(job, entry.second) &&
-           std::find(tried.begin(), tried.end(), entry.first) == tried.end() &&
-           std::find(heard.begin(), heard.end(), entry.second.voice) == heard.end();
+  const auto it = classes_.find(worker_class);
+  if (it == classes_.end()) return false;
+  const std::set<WorkerId>& able = it->second.able;
+  return std::any_of(able.begin(), able.end(), [&](WorkerId id) {
+    if (std::binary_search(tried.begin(), tried.end(), id)) return false;
+    const Worker& other = workers_.at(id);
+    return suits(job, other) && std::find(heard.begin(), heard.end(), other.voice) == heard.end();
   });
 }
 

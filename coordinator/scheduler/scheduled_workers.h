@@ -40,7 +40,8 @@ struct Worker {
   uint32_t wanted = 0;                 ///< units it asked for and did not get yet
   uint64_t waiting = 0;                ///< its place among those who wait, or 0
   bool barred = false;                 ///< gets nothing
-  std::vector<uint64_t> leases;
+  std::set<uint64_t> leases;
+  uint32_t units = 0;  ///< that it has under all of them
 };
 
 /// The connected workers: their classes and tags, who may render what, who waits for work; and what
@@ -50,7 +51,7 @@ class ScheduledWorkers {
   /// What a worker could not render and others could, without a unit of its own between.
   struct Failures {
     uint32_t count = 0;
-    std::string reason;  ///< of the last
+    std::string reason;  ///< of the last unit that it failed
   };
 
   explicit ScheduledWorkers(const Step& step) : step_(step) {}
@@ -64,7 +65,7 @@ class ScheduledWorkers {
   uint64_t threads() const { return threads_; }  ///< of all
 
   /// From now on the worker gets nothing, or gets units again.
-  void bar(Worker& worker, bool barred);
+  void bar(WorkerId id, Worker& worker, bool barred);
   bool quarantined(WorkerId id) const { return quarantined_.contains(id); }
   /// Puts a worker into quarantine, which stays when it goes and comes back. False where it is in
   /// it already.
@@ -73,7 +74,7 @@ class ScheduledWorkers {
   void pardon(WorkerId id);
   /// What the worker could not render, to be counted on.
   Failures& failures(WorkerId id) { return failures_[id]; }
-  void forget_failures(WorkerId id) { failures_.erase(id); }
+  void forget_failures(WorkerId id);
   /// Notes that the worker gave units back: who does so more often than anybody has reason to
   /// rests, or nobody else would get any.
   void note_given_back(WorkerId id, uint32_t units);
@@ -116,8 +117,8 @@ class ScheduledWorkers {
   static bool may_join(const ScheduledJob& job, WorkerId id, const Worker& worker);
   /// Whether a worker of the class may get units of the job.
   bool anybody_for(const ScheduledJob& job, ClassId worker_class) const;
-  /// Whether a worker of the class is there that may get units of the job, is none of `tried` and
-  /// has none of the voices that were `heard`.
+  /// Whether a worker of the class is there that may get units of the job, is none of `tried`,
+  /// which is sorted, and has none of the voices that were `heard`.
   bool anybody_besides(const std::vector<WorkerId>& tried, const std::vector<Voice>& heard,
                        const ScheduledJob& job, ClassId worker_class) const;
   /// Whether the worker may get a unit that has failed with `blamed`: not as one of them, as long
@@ -140,11 +141,12 @@ class ScheduledWorkers {
   struct Class {
     std::string name;
     uint32_t connected = 0;
-    std::map<Origin, uint32_t> origins;  ///< of those that may get units: how many of each
+    std::set<WorkerId> able;             ///< those that may get units
+    std::map<Origin, uint32_t> origins;  ///< of these: how many of each
   };
 
   static bool suits(const ScheduledJob& job, const Worker& worker);
-  void count_origin(const Worker& worker, bool one_more);
+  void count_able(WorkerId id, const Worker& worker, bool one_more);
   bool is_slow(const Worker& worker) const;
 
   const Step& step_;

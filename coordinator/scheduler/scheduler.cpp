@@ -117,7 +117,7 @@ uint32_t Scheduler::leased_units(JobId id) const {
 
 uint32_t Scheduler::leased_units(WorkerId id) const {
   const Worker* worker = parts_->workers.find(id);
-  return worker == nullptr ? 0 : parts_->leases.units_of(*worker);
+  return worker == nullptr ? 0 : worker->units;
 }
 
 std::vector<UnitInHand> Scheduler::units_of(WorkerId worker, const LeaseId& lease) const {

@@ -66,7 +66,7 @@ void WorkerLifecycle::on(const WorkerBarred& e) {
   if (!e.barred || e.pardoned) workers_.pardon(e.worker);
   Worker* worker = workers_.find(e.worker);
   if (worker == nullptr || worker->barred == e.barred) return;
-  workers_.bar(*worker, e.barred);
+  workers_.bar(e.worker, *worker, e.barred);
   if (e.barred) affinity_.settle(*worker, std::nullopt);
   step_.work_appeared = true;
 }
@@ -93,7 +93,7 @@ bool WorkerLifecycle::quarantine(WorkerId id, const std::string& reason) {
   if (Worker* worker = workers_.find(id)) {
     leases_.release_all(*worker, true);
     affinity_.settle(*worker, std::nullopt);
-    workers_.bar(*worker, true);
+    workers_.bar(id, *worker, true);
   }
   // A unit that failed with others may now be theirs to try again.
   step_.work_appeared = true;
@@ -103,11 +103,9 @@ bool WorkerLifecycle::quarantine(WorkerId id, const std::string& reason) {
 void WorkerLifecycle::forgive_and_blame(const ScheduledJob& job, FrameSlot& slot,
                                         const Extent& extent, WorkerId worker) {
   workers_.forget_failures(worker);
-  const FrameLedger::Failures failures = slot.ledger->take_blame(extent);
-  for (const WorkerId failed : failures.workers) {
+  for (const WorkerId failed : slot.ledger->take_blame(extent)) {
     if (failed == worker) continue;
     ScheduledWorkers::Failures& in_a_row = workers_.failures(failed);
-    in_a_row.reason = failures.reason;
     if (++in_a_row.count < options_.max_failures) continue;
     const std::string why =
         fmt::format("failed {} units in a row that others could render, the last of job {}: {}",

@@ -1,0 +1,99 @@
+// What a few can do to all others by having much of something.
+#include <algorithm>
+#include <ctime>
+
+#include "coordinator/scheduler/frame_ledger.h"
+#include "tests/coordinator/scheduler/scheduler_testing.h"
+
+namespace hyades::coordinator {
+namespace {
+
+double cpu_seconds() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
+
+/// A frame of so many units, all of which have failed with the worker.
+FrameLedger failed_with(WorkerId worker, uint32_t units) {
+  std::vector<uint32_t> order(units);
+  for (uint32_t tile = 0; tile < units; ++tile) order[tile] = tile;
+  FrameLedger ledger(order, 1);
+  const LeaseId lease{1, 1};
+  for (uint32_t tile = 0; tile < units; ++tile) {
+    const Extent e{tile, {0, 1}};
+    ledger.assign(e, {worker, lease}, tile + 1);
+    ledger.blame(e, worker, Voice{1});
+    ledger.release(e, lease);
+  }
+  return ledger;
+}
+
+// It took seconds for each decision, of whatever worker.
+TEST(Attacks, UnitsThatHaveFailedWithOneWorkerAreLookedAtOnce) {
+  constexpr uint32_t kUnits = 100'000;
+  const double begin = cpu_seconds();
+  FrameLedger ledger = failed_with(kAnna, kUnits);
+  size_t asked = 0;
+  const auto judge_of = [&](WorkerId worker) {
+    return [&asked, worker](const std::vector<WorkerId>& blamed, const std::vector<Voice>&) {
+      ++asked;
+      return !std::binary_search(blamed.begin(), blamed.end(), worker);
+    };
+  };
+  EXPECT_FALSE(ledger.has_work(judge_of(kAnna)));
+  EXPECT_EQ(asked, 1U);
+  for (uint32_t i = 0; i < kUnits; ++i) {
+    ASSERT_TRUE(ledger.has_work(judge_of(kBert)));
+    const auto unit = ledger.next(judge_of(kBert), [](uint32_t) { return 1U; });
+    ASSERT_TRUE(unit);
+    ASSERT_EQ(unit->tile, i) << "whose turn it is first";
+    ledger.assign(*unit, {kBert, {1, 2}}, kUnits + i);
+    ledger.hold(*unit, {unit->batches, digest(1), kBert, {}});
+    (void)ledger.end_assignment(*unit);
+    ASSERT_EQ(ledger.take_blame(*unit), std::vector<WorkerId>{kAnna});
+  }
+  EXPECT_EQ(asked, 1 + 2 * size_t{kUnits});
+  EXPECT_FALSE(ledger.any_retry());
+  EXPECT_EQ(ledger.audit(), "");
+  EXPECT_LT(cpu_seconds() - begin, 60.0) << "some tenths of a second; it would take minutes";
+}
+
+// Work that nobody has tried yet is there: nobody looks at what has failed.
+TEST(Attacks, WhereOtherWorkIsLeftFailedUnitsAreNotLookedAt) {
+  FrameLedger ledger({0, 1, 2}, 1);
+  const Extent e{0, {0, 1}};
+  ledger.assign(e, {kAnna, {1, 1}}, 1);
+  ledger.blame(e, kAnna, Voice{1});
+  ledger.release(e, {1, 1});
+  size_t asked = 0;
+  EXPECT_TRUE(ledger.has_work([&](const auto&, const auto&) { return ++asked == 0; }));
+  EXPECT_EQ(asked, 0U);
+}
+
+TEST(Attacks, NobodyHasMoreUnitsToComeThanHeNeeds) {
+  SchedulerBench b;
+  b.tell(WorkerJoined{kAnna, 1, "class", {}});
+  b.tell(WorkerJoined{kBert, 32, "class", {}});
+  b.add(small_plan({1}, 1000));
+  b.tell(FrameOpened{kJob, 1});
+  for (const auto& [worker, most] : {std::pair(kAnna, 64U), std::pair(kBert, 128U)}) {
+    b.tell(WorkRequested{worker, 100'000});
+    EXPECT_EQ(b.scheduler.leased_units(worker), most);
+    for (const Lease& lease : b.all<Lease>()) EXPECT_LE(lease.units.size(), 64U);
+  }
+}
+
+TEST(Attacks, NobodyHasMoreUnitsThanHeMayBringAlong) {
+  SchedulerBench b;
+  b.join(kAnna);
+  JobPlan plan = small_plan({1}, 25'000);
+  plan.region = {0, 0, 32, 32};
+  b.add(plan);
+  b.tell(FrameOpened{kJob, 1});
+  for (int i = 0; i < 400; ++i) {
+    b.scheduler.handle(WorkRequested{kAnna, 64}, b.now);
+  }
+  EXPECT_EQ(b.scheduler.leased_units(kAnna), 20'000U);
+  b.tell(WorkerLost{kAnna});
+  EXPECT_EQ(b.scheduler.leased_units(kJob), 0U);
+}
+
+}  // namespace
+}  // namespace hyades::coordinator
