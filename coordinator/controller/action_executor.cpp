@@ -33,6 +33,8 @@ void ActionExecutor::act(const std::vector<Action>& actions, Turn& turn, Deliver
               // The film takes memory only as units come in.
               turn.tell(FrameOpened{open.job, open.frame}, delivery);
             },
+            [&](const SetAside& aside)
+                HYADES_REQUIRES(state_lock) { films_.set_aside(aside, turn); },
             [&](const Lease& lease) HYADES_REQUIRES(state_lock) { sessions_.send_lease(lease); },
             [&](const Revoke& revoke) HYADES_REQUIRES(state_lock) { send(revoke); },
             [&](const Persist& persist)

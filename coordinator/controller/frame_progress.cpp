@@ -121,7 +121,7 @@ void FrameProgress::count_film(ActiveJob& active, const Merge& merge, int64_t be
 
 void FrameProgress::judge(ActiveJob& active, const JudgeTile& judge) {
   active.film_store->call([this, judge] {
-    const FilmStore* film_store = nullptr;
+    FilmStore* film_store = nullptr;
     core::NoiseThreshold threshold;
     {
       const StateLock lock(context_.mutex);
@@ -130,6 +130,7 @@ void FrameProgress::judge(ActiveJob& active, const JudgeTile& judge) {
       film_store = found->film_store.get();
       threshold = found->threshold;
     }
+    if (!film_store->fetch(judge.frame)) return;
     const auto film = film_store->film(judge.frame);
     const bool enough = film && core::is_clean(*film, judge.tile, threshold);
     Turn turn(dispatcher_);
@@ -183,7 +184,8 @@ void FrameProgress::finish(ActiveJob& active, const FinishFrame& finish) {
   if (active.complete.contains(finish.frame)) return hand_over(active, finish);
   // By any thread, as a result may be what completes a frame: the film store's may still be merging
   // its last film, and comes to this when it has.
-  active.film_store->call([this, finish] {
+  active.film_store->call([this, finish, film_store = active.film_store.get()] {
+    if (!film_store->fetch(finish.frame)) return;
     measure_noise(finish.job, finish.frame);
     const std::shared_ptr<const core::Film> film = film_of(finish.job, finish.frame);
     const bool black = film != nullptr && core::is_black(*film);

@@ -149,6 +149,17 @@ std::unique_ptr<FilmStore> JobFilms::make(ActiveJob& active, bool resume) {
   return std::make_unique<FilmStore>(std::move(films), std::move(place), *active.film_listener);
 }
 
+void JobFilms::set_aside(const SetAside& aside, Turn& turn) {
+  ActiveJob* active = jobs_.find(aside.job);
+  if (active == nullptr) return;
+  if (!active->film_store) return turn.tell(FilmSetAside{aside.job, aside.frame, true});
+  active->film_store->call([this, aside, film_store = active->film_store.get()] {
+    const bool done = film_store->set_aside(aside.frame).ok();
+    Turn later(dispatcher_);
+    later.tell(FilmSetAside{aside.job, aside.frame, done});
+  });
+}
+
 /// A job gets its log and threads with its first film, so that those that wait cost little. The
 /// store takes what it is given from now on; its log is opened by the job's tasks.
 FilmStore& JobFilms::of(ActiveJob& active) {

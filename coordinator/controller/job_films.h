@@ -26,6 +26,8 @@ class JobFilms {
   /// Makes a record durable; the scheduler hears when it is, or that it cannot be. `delivery`: the
   /// result that the record is of, where it is a unit's.
   void persist(const Persist& persist, Delivery* delivery) HYADES_REQUIRES(state_lock);
+  /// Has the film of a frame set aside; the scheduler hears whether it is.
+  void set_aside(const SetAside& aside, Turn& turn) HYADES_REQUIRES(state_lock);
   /// A store of the job's films, not opened yet. `resume`: it continues with those that are there,
   /// instead of removing them.
   std::unique_ptr<FilmStore> make(ActiveJob& active, bool resume) HYADES_REQUIRES(state_lock);

@@ -428,12 +428,18 @@ grpc::Status JobQueries::copy_film(uint64_t id, int32_t frame, std::optional<cor
   info->worker_class = noted->second.worker_class;
   // The film store's thread copies, as only it may look at films while they grow.
   active->film_store->call([film_store = active->film_store.get(), copies = &context_.film_copies,
-                            frame, info = std::move(*info), then = std::move(then)] {
-    const auto film = film_store->film(frame);
-    if (!film) return then(nothing_yet(), info, nullptr);
-    const uint64_t bytes = with_picture(film->memory());
+                            frame, most = active->film_bytes, info = std::move(*info),
+                            then = std::move(then)] {
+    auto film = film_store->film(frame);
+    const bool aside = film_store->is_aside(frame);
+    if (!film && !aside) return then(nothing_yet(), info, nullptr);
+    const uint64_t bytes = with_picture(film ? film->memory() : most);
     const auto room = copies->hold(bytes);
     if (!room) return then(no_room(bytes, *copies), info, {});
+    if (aside) {
+      if (auto copy = film_store->read_aside(frame)) film = std::move(*copy);
+    }
+    if (!film) return then(nothing_yet(), info, nullptr);
     then(grpc::Status::OK, info, kept_with(room, core::Film(*film)));
   });
   return grpc::Status::OK;

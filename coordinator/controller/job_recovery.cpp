@@ -419,6 +419,26 @@ void JobRecovery::restore_films(ActiveJob& active, const LogContents& contents,
   }
 }
 
+/// Films that nobody works at, or that have no room beside those of the jobs that are there, leave
+/// memory at once: all open jobs' together may take more than there is.
+void JobRecovery::set_films_aside(const ActiveJob& active, RestoredJob& restored) {
+  uint64_t room = 0;
+  {
+    const StateLock lock(context_.mutex);
+    const uint64_t taken = dispatcher_.scheduler().films();
+    room = context_.options.film_memory - std::min(taken, context_.options.film_memory);
+  }
+  if (active.stored.state == StoredState::paused) room = 0;
+  for (const int32_t frame : active.in_work) {
+    if (active.complete.contains(frame)) continue;
+    if (active.film_bytes <= room) {
+      room -= active.film_bytes;
+    } else if (active.film_store->set_aside(frame)) {
+      restored.set_aside.push_back(frame);
+    }
+  }
+}
+
 core::Status JobRecovery::start(std::unique_ptr<ActiveJob> owned, RestoredJob restored) {
   ActiveJob& active = *owned;
   int32_t tile_size = tile_size_of(active);
@@ -432,6 +452,7 @@ core::Status JobRecovery::start(std::unique_ptr<ActiveJob> owned, RestoredJob re
     if (!contents) return contents.error();
     if (contents->cut.tile_size > 0) tile_size = contents->cut.tile_size;
     restore_films(active, *contents, restored);
+    set_films_aside(active, restored);
     if (auto started = active.film_store->start(tile_size); !started) return started;
   }
   active.brief = brief_of(active);

@@ -303,6 +303,11 @@ std::vector<std::byte> encode_unit(int32_t frame, const FrameKey& key, const cor
   return out;
 }
 
+core::Result<core::Film> decode_unit(std::span<const std::byte> record) {
+  if (record.size() < kHead + kFrameAndKey) return core::Error{"a film's record is too short"};
+  return core::decode_film(record.subspan(kHead + kFrameAndKey), {.max_bytes = UINT64_MAX});
+}
+
 std::vector<std::byte> encode_delivered(const AcceptedUnit& unit, const FrameKey& key,
                                         std::span<const std::byte> film) {
   std::vector<std::byte> out = begin(Kind::delivered);

@@ -45,6 +45,8 @@ struct FinishedRecord {
 std::vector<std::byte> encode_cut(const CutRecord& cut);
 /// A film of some tiles and batches of a frame.
 std::vector<std::byte> encode_unit(int32_t frame, const FrameKey& key, const core::Film& film);
+/// The film of an encode_unit() record that this process has written.
+core::Result<core::Film> decode_unit(std::span<const std::byte> record);
 /// A film as a worker delivered it: `film` is what film_codec.h packed. Of `unit` frame, digest and
 /// class are kept; the film says the rest.
 std::vector<std::byte> encode_delivered(const AcceptedUnit& unit, const FrameKey& key,

@@ -26,6 +26,9 @@ constexpr Duration kCompactAgain = std::chrono::seconds(5);
 /// memory; more would have to be rendered again.
 constexpr size_t kUnfinishedFilms = 2;
 
+/// How the files of films that are set aside end.
+constexpr const char* kAside = ".aside";
+
 /// Whose log it is. What its films are of stands beside each of them.
 constexpr const char* kLogKey = "hyades render, films by frame";
 
@@ -66,7 +69,7 @@ FrameKey FilmStore::key_of(int32_t frame) const {
 
 core::Status FilmStore::open_log(bool erase) {
   log_.reset();
-  LogFiles& files = options_.files != nullptr ? *options_.files : disk_log_files();
+  LogFiles& files = this->files();
   if (core::Status made = files.make_folder(options_.folder); !made) return made;
   if (erase) {
     if (core::Status erased = erase_film_log(options_.folder, &files); !erased) return erased;
@@ -90,7 +93,18 @@ core::Status FilmStore::open_log(bool erase) {
   auto log = FilmLog::open(options_.folder, kLogKey, options);
   if (!log) return log.error();
   log_ = std::move(*log);
+  // All that an earlier run had set aside is in the log.
+  const auto names = files.list(options_.folder);
+  if (!names) return names.error();
+  for (const std::string& name : *names) {
+    if (!name.ends_with(kAside)) continue;
+    if (core::Status gone = files.remove(options_.folder + "/" + name); !gone) return gone;
+  }
   return {};
+}
+
+LogFiles& FilmStore::files() const {
+  return options_.files != nullptr ? *options_.files : disk_log_files();
 }
 
 core::Result<LogContents> FilmStore::open() {
@@ -133,6 +147,7 @@ core::Result<LogContents> FilmStore::open() {
   others_films_ = contents->others;
   for (const auto& [frame, units] : contents->units) classes_[frame] = units.front().worker_class;
   write_cut_ = contents->empty || contents->cut.region != set_.region;
+  tile_size_ = contents->cut.tile_size;
   return contents;
 }
 
@@ -354,12 +369,14 @@ void FilmStore::apply(const Record& record) {
                  },
                  [](const FrameFailedRecord&) {},
                  [&](const FrameRestartedRecord& restarted) {
+                   remove_aside(restarted.frame);
                    films_.erase(restarted.frame);
                    classes_.erase(restarted.frame);
                    finished_.erase(restarted.frame);
                    unfinished_.erase(restarted.frame);
                  },
                  [&](const TileVoidedRecord& voided) {
+                   if (!fetch(voided.frame)) return;
                    const auto whole = films_.find(voided.frame);
                    if (whole == films_.end()) return;
                    // Whoever looks at the film meanwhile keeps what was there.
@@ -385,6 +402,7 @@ core::Status FilmStore::merge(RecordId record) {
                                ? std::get_if<UnitRecord>(&settling_->record)
                                : nullptr;
   if (unit == nullptr) return core::Error{"a film is to be merged that is not at hand"};
+  if (!fetch(unit->accepted.unit.frame)) return {};
   auto& whole = films_[unit->accepted.unit.frame];
   const core::Film& film = settling_->film;
   if (!whole) {
@@ -406,7 +424,76 @@ std::shared_ptr<const core::Film> FilmStore::film(int32_t frame) const {
   return it == films_.end() ? nullptr : it->second;
 }
 
+std::string FilmStore::path_aside(int32_t frame) const {
+  return fmt::format("{}/{}{}", options_.folder, frame, kAside);
+}
+
+core::Status FilmStore::set_aside(int32_t frame) {
+  const auto it = films_.find(frame);
+  if (it == films_.end()) return {};
+  if (!logs() || tile_size_ < 1) return core::Error{"films are kept in memory alone"};
+  auto file = files().create(path_aside(frame));
+  if (!file) return file.error();
+  // It is not for another run, which has the log.
+  const auto put = [&](std::span<const std::byte> bytes) -> core::Status {
+    const uint64_t size = bytes.size();
+    if (core::Status done = (*file)->write(std::as_bytes(std::span(&size, 1))); !done) return done;
+    return (*file)->write(bytes);
+  };
+  const core::Status written = write_film(frame, key_of(frame), *it->second,
+                                          {set_.region, tile_size_, set_.samples}, {}, put);
+  file->reset();
+  if (!written) {
+    (void)files().remove(path_aside(frame));
+    return written;
+  }
+  aside_[frame] = too_large(*it->second);
+  films_.erase(it);
+  return {};
+}
+
+core::Result<std::shared_ptr<core::Film>> FilmStore::read_aside(int32_t frame) const {
+  const auto file = files().open(path_aside(frame));
+  if (!file) return file.error();
+  std::shared_ptr<core::Film> whole;
+  for (uint64_t at = 0; at < (*file)->size();) {
+    uint64_t size = 0;
+    core::Status read = (*file)->read(at, std::as_writable_bytes(std::span(&size, 1)));
+    if (read && size > (*file)->size() - at) read = core::Error{"it is cut off"};
+    if (!read) return read.error().in(path_aside(frame));
+    std::vector<std::byte> record(size);
+    read = (*file)->read(at + sizeof size, record);
+    if (!read) return read.error().in(path_aside(frame));
+    const auto part = decode_unit(record);
+    if (!part) return part.error().in(path_aside(frame));
+    if (!whole) {
+      whole = std::make_shared<core::Film>(part->layout(), set_.region, part->splats().region());
+    }
+    if (core::Status merged = whole->merge(*part); !merged) return merged.error();
+    at += sizeof size + size;
+  }
+  return whole;
+}
+
+bool FilmStore::fetch(int32_t frame) {
+  if (!is_aside(frame)) return true;
+  auto film = read_aside(frame);
+  remove_aside(frame);
+  if (!film) {
+    // What comes would else be taken for all of it.
+    listener_.outgrown(frame, "its film is lost: " + film.error().message);
+    return false;
+  }
+  if (*film) films_[frame] = std::move(*film);
+  return true;
+}
+
+void FilmStore::remove_aside(int32_t frame) {
+  if (aside_.erase(frame) > 0) (void)files().remove(path_aside(frame));
+}
+
 void FilmStore::forget(int32_t frame, FrameEnd end) {
+  remove_aside(frame);
   if (const auto bytes = frame_bytes_.extract(frame)) useless_bytes_ += bytes.mapped();
   const auto it = films_.find(frame);
   if (it == films_.end()) return;
@@ -431,6 +518,9 @@ void FilmStore::compact_if_worthwhile(bool room_wanted) {
     for (const auto& [frame, film] : *films) {
       if (too_large(*film)) return;
     }
+  }
+  for (const auto& [frame, large] : aside_) {
+    if (large) return;
   }
   const uint64_t snapshot_before = std::exchange(snapshot_bytes_, 0);
   std::map<int32_t, uint64_t> frames_before = std::exchange(frame_bytes_, {});
@@ -465,20 +555,29 @@ core::Status FilmStore::write_snapshot(const FilmLog::Sink& sink) {
   std::map<int32_t, std::shared_ptr<core::Film>> films = films_;
   films.insert(unfinished_.begin(), unfinished_.end());
   for (const auto& [frame, film] : films) {
+    if (status) status = put_film(frame, *film, put);
+  }
+  for (const auto& [frame, large] : aside_) {
     if (!status) break;
-    const auto known = classes_.find(frame);
-    const auto put_part =
-        [&, &of_frame = frame_bytes_[frame]](std::span<const std::byte> bytes) -> core::Status {
-      of_frame += bytes.size();
-      if (core::Status done = put(bytes); !done) return done;
-      const core::MutexLock lock(mutex_);
-      if (draining_) return core::Error{"the run ends"};
-      return {};
-    };
-    status = write_film(frame, key_of(frame), *film, cut,
-                        known == classes_.end() ? std::string() : known->second, put_part);
+    const auto film = read_aside(frame);
+    if (!film) return film.error();
+    if (*film) status = put_film(frame, **film, put);
   }
   return status;
+}
+
+core::Status FilmStore::put_film(int32_t frame, const core::Film& film, const FilmLog::Sink& sink) {
+  const auto known = classes_.find(frame);
+  uint64_t& of_frame = frame_bytes_[frame];
+  const auto put_part = [&](std::span<const std::byte> bytes) -> core::Status {
+    of_frame += bytes.size();
+    if (core::Status done = sink(bytes); !done) return done;
+    const core::MutexLock lock(mutex_);
+    if (draining_) return core::Error{"the run ends"};
+    return {};
+  };
+  return write_film(frame, key_of(frame), film, {set_.region, tile_size_, set_.samples},
+                    known == classes_.end() ? std::string() : known->second, put_part);
 }
 
 }  // namespace hyades::coordinator

@@ -76,8 +76,8 @@ class FilmStore {
     virtual void persisted(RecordId record) = 0;
     /// The record could not be taken; the film of a unit is lost.
     virtual void not_persisted(RecordId record, const std::string& reason) = 0;
-    /// By merge(): the frame's film would take more memory than it may. It holds nothing any more,
-    /// and the frame is to fail.
+    /// By merge(): the frame's film would take more memory than it may, or by fetch(): it cannot be
+    /// read again. It holds nothing any more, and the frame is to fail.
     virtual void outgrown(int32_t frame, const std::string& reason) = 0;
     /// Some time after not_persisted: it may be tried again.
     virtual void try_again() = 0;
@@ -128,6 +128,15 @@ class FilmStore {
   core::Status merge(RecordId record);
   /// What has been merged of the frame; null where nothing has.
   std::shared_ptr<const core::Film> film(int32_t frame) const;
+  /// The frame's film leaves memory, for a file of this run beside the log, and comes back with
+  /// fetch(), or when something is merged with it. On an error it stays.
+  core::Status set_aside(int32_t frame);
+  /// Whether the frame's film is set aside.
+  bool is_aside(int32_t frame) const { return aside_.contains(frame); }
+  /// A copy of the frame's film, which is set aside and stays so; null where it holds nothing.
+  core::Result<std::shared_ptr<core::Film>> read_aside(int32_t frame) const;
+  /// Has the frame's film in memory, if there is one. Whether that could be done.
+  bool fetch(int32_t frame);
   /// The frame is over. A film whose outputs could not be written stays in the log for another run.
   void forget(int32_t frame, FrameEnd end);
 
@@ -157,6 +166,10 @@ class FilmStore {
   void compact_if_worthwhile(bool room_wanted);
   core::Status write_snapshot(const FilmLog::Sink& sink);
   void release(uint64_t memory);
+  LogFiles& files() const;
+  std::string path_aside(int32_t frame) const;
+  void remove_aside(int32_t frame);
+  core::Status put_film(int32_t frame, const core::Film& film, const FilmLog::Sink& sink);
 
   const FilmSet set_;
   const FilmStoreOptions options_;
@@ -179,6 +192,8 @@ class FilmStore {
   std::deque<Item> appended_;  ///< not durable yet, or not settled
   Item* settling_ = nullptr;
   std::map<int32_t, std::shared_ptr<core::Film>> films_;
+  std::map<int32_t, bool> aside_;  ///< frames whose films are set aside; whether they are too large
+                                   ///< for a record of the log
   std::map<int32_t, std::string> classes_;  ///< of frames, where workers delivered their films
   std::map<int32_t, FinishedRecord> finished_;
   /// Complete films of frames whose outputs could not be written.

@@ -202,6 +202,7 @@ std::vector<LocalRun::DeferredAction> LocalRun::tell_locked(const Event& event) 
                    },
                    // Threads do not forget, do not fall behind each other and are all of one
                    // machine.
+                   [](SetAside&) {},
                    [](Revoke&) {},
                    [](Acknowledge&) {},
                    [](Conflict&) {},

@@ -18,6 +18,13 @@ struct OpenFrame {
   int32_t frame = 0;
 };
 
+/// Nobody works at the frame, and its film is in the way of others: put it where it takes no
+/// memory, to be fetched back when something is merged with it. Answered by FilmSetAside.
+struct SetAside {
+  JobId job{};
+  int32_t frame = 0;
+};
+
 /// These units, all of one frame, are the worker's until the deadline.
 struct Lease {
   WorkerId worker{};
@@ -220,8 +227,8 @@ struct JobEnded {
 };
 
 using Action =
-    std::variant<OpenFrame, Lease, Revoke, Persist, Merge, JudgeTile, TileSpared, Acknowledge,
-                 Reject, Conflict, Quarantine, Confirmed, TileVoided, FrameReopened, FinishFrame,
-                 FrameDone, FrameFailed, FrameRestarted, JobEnded>;
+    std::variant<OpenFrame, SetAside, Lease, Revoke, Persist, Merge, JudgeTile, TileSpared,
+                 Acknowledge, Reject, Conflict, Quarantine, Confirmed, TileVoided, FrameReopened,
+                 FinishFrame, FrameDone, FrameFailed, FrameRestarted, JobEnded>;
 
 }  // namespace hyades::coordinator

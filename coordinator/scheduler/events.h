@@ -63,6 +63,12 @@ struct FrameRefused {
   int32_t frame = 0;
   std::string reason;
 };
+/// The answer to SetAside: whether the film takes no memory any more.
+struct FilmSetAside {
+  JobId job{};
+  int32_t frame = 0;
+  bool done = false;
+};
 /// The frame's outputs are written and durable.
 struct FinishDone {
   JobId job{};
@@ -200,9 +206,9 @@ struct Tick {};
 
 using Event =
     std::variant<JobAdded, JobPaused, JobResumed, JobCancelled, JobReprioritised, FramesRetried,
-                 FramesSuspected, FrameOpened, FrameRefused, FinishDone, FinishFailed, TileJudged,
-                 WorkerJoined, WorkRequested, LeasingHeld, FrameWatched, WorkerAlive, ResultArrived,
-                 UnitFailed, UnitReturned, WorkerBarred, WorkerLost, WorkerForgotten, Persisted,
-                 PersistFailed, Tick>;
+                 FramesSuspected, FrameOpened, FrameRefused, FilmSetAside, FinishDone, FinishFailed,
+                 TileJudged, WorkerJoined, WorkRequested, LeasingHeld, FrameWatched, WorkerAlive,
+                 ResultArrived, UnitFailed, UnitReturned, WorkerBarred, WorkerLost, WorkerForgotten,
+                 Persisted, PersistFailed, Tick>;
 
 }  // namespace hyades::coordinator

@@ -2,44 +2,56 @@
 
 #include <cstdint>
 #include <map>
+#include <set>
 #include <string>
+#include <utility>
 
 #include "coordinator/scheduler/scheduled_job.h"
 #include "coordinator/scheduler/step.h"
 
 namespace hyades::coordinator {
 
-/// How much memory the films of all frames take that have begun and are not over [bytes], and how
-/// much they may.
+/// How much memory the films of all frames take that have begun, are not over and not set aside
+/// [bytes], and how much they may.
 class FilmBudget {
  public:
   FilmBudget(uint64_t limit, Step& step) : limit_(limit), step_(step) {}
 
   /// The frame's film is in memory from now on, or will be with the first unit.
   void take(const ScheduledJob& job, FrameSlot& slot);
-  /// The frame's film is gone, if there was one: there is room for another.
+  /// The frame's film is gone from memory, if there was one: there is room for another.
   void drop(const ScheduledJob& job, FrameSlot& slot);
 
   /// What all films take.
   uint64_t bytes() const { return bytes_; }
+  /// The frames whose films these are, by job and slot.
+  const std::set<std::pair<JobId, uint32_t>>& holders() const { return holders_; }
   /// Whether films of the job's owner take more than half of what all may.
   bool most_are_of(const ScheduledJob& job) const;
   /// Whether a film of the job fits beside those that are there.
-  bool has_room(const ScheduledJob& job) const;
+  bool has_room(const ScheduledJob& job) const { return bytes_ == 0 || fits(job, limit_); }
+  /// Whether it may begin where none of the others can be set aside.
+  bool has_room_in_need(const ScheduledJob& job) const { return fits(job, limit_ + limit_ / 4); }
 
-  /// Some frame gets no units, as its film does not fit.
-  void refuse() { refused_ = true; }
+  /// Some frame of the job gets no units, as its film does not fit.
+  void refuse(const ScheduledJob& job);
   /// Whether that has happened since serve_refused().
   bool refused() const { return refused_; }
-  /// There is more room, or nothing is in work any more: whoever waits for units is served again.
+  /// How many bytes have to go until all fit that were refused, one at a time.
+  uint64_t lacking() const;
+  /// There is more room, or more may begin: whoever waits for units is served again.
   void serve_refused();
 
  private:
+  bool fits(const ScheduledJob& job, uint64_t limit) const;
+
   const uint64_t limit_;
   Step& step_;
   uint64_t bytes_ = 0;
   std::map<std::string, uint64_t> bytes_of_;  ///< by owner
+  std::set<std::pair<JobId, uint32_t>> holders_;
   bool refused_ = false;
+  uint64_t wanted_ = 0;  ///< of the largest film that was refused
 };
 
 }  // namespace hyades::coordinator

@@ -87,6 +87,12 @@ class FrameLedger {
   /// Who has had a unit of it since then or longer, once for each such unit.
   std::vector<WorkerId> holders_since(TimePoint time) const;
 
+  /// Whether nobody renders any of it, or is asked about it, and all that was held is durable.
+  bool idle() const {
+    return assignments_.empty() && questions_ == 0 && voiding_.empty() &&
+           total_ - free_ == durable_;
+  }
+
   // Held batches.
 
   /// Whether some of its batches are held.
@@ -127,7 +133,10 @@ class FrameLedger {
   /// The tiles of which that is so, in order.
   std::vector<uint32_t> to_judge() const;
   /// Somebody is asked about the tile; `serial` is of no question before.
-  void ask(uint32_t tile, uint64_t serial) { rounds_of_[tile].asked = serial; }
+  void ask(uint32_t tile, uint64_t serial) {
+    rounds_of_[tile].asked = serial;
+    ++questions_;
+  }
   /// The answer to question `serial`: the tile has enough, or the next round begins. Whether it
   /// counts: not where the films that were judged are void, or about to be.
   bool judge(uint32_t tile, uint64_t serial, bool enough);
@@ -254,6 +263,7 @@ class FrameLedger {
   uint64_t free_ = 0;
   uint64_t undecided_ = 0;  ///< tiles of which it is not known yet if they need more
   uint64_t durable_ = 0;
+  uint32_t questions_ = 0;  ///< about tiles, that are not answered
   BatchMap held_;
   BatchMap leased_;
   /// Runs that may hold free batches, in the order of leasing. Every free batch is in here or in a

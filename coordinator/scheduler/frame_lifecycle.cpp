@@ -15,6 +15,8 @@ namespace {
 constexpr Duration kLongestFrame = std::chrono::hours(24);
 /// How many times its patience lets the farm do without slow workers' beginnings.
 constexpr int kSlowFor = 12;
+/// A film that could not be set aside stays for so long.
+constexpr Duration kStays = std::chrono::seconds(10);
 
 }  // namespace
 
@@ -38,6 +40,24 @@ void FrameLifecycle::on(const FrameRefused& e) {
     return;
   }
   fail(*job, *slot, e.reason);
+}
+
+void FrameLifecycle::on(const FilmSetAside& e) {
+  const auto [job, slot] = jobs_.find_frame({e.job, e.frame});
+  // Somebody may have come to work at it meanwhile, so that it is fetched back.
+  if (slot == nullptr || !std::exchange(slot->leaving, false)) return;
+  if (e.done) return films_.drop(*job, *slot);
+  slot->stays_until = step_.now + kStays;
+}
+
+bool FrameLifecycle::may_leave(const FrameSlot& slot) {
+  return !slot.suspect && slot.ledger && slot.ledger->idle() && !slot.ledger->complete() &&
+         (slot.phase == FramePhase::rendering || slot.phase == FramePhase::waiting);
+}
+
+void FrameLifecycle::set_aside(const ScheduledJob& job, FrameSlot& slot) {
+  slot.leaving = true;
+  step_.say(SetAside{job.id, slot.frame});
 }
 
 void FrameLifecycle::on(const FinishDone& e) {
@@ -120,6 +140,7 @@ void FrameLifecycle::finish_if_complete(ScheduledJob& job, FrameSlot& slot) {
 }
 
 void FrameLifecycle::finish(ScheduledJob& job, FrameSlot& slot) {
+  films_.take(job, slot);
   // Late films may have overtaken units that are still out.
   leases_.take_back(job, slot);
   slot.phase = FramePhase::finishing;
@@ -137,6 +158,7 @@ void FrameLifecycle::say_finish(const ScheduledJob& job, const FrameSlot& slot) 
 void FrameLifecycle::judge_if_due(const ScheduledJob& job, FrameSlot& slot, uint32_t tile) {
   FrameLedger& ledger = *slot.ledger;
   if (slot.phase != FramePhase::rendering || !ledger.is_to_judge(tile)) return;
+  films_.take(job, slot);
   ledger.ask(tile, ++last_question_);
   step_.say(
       JudgeTile{job.id, slot.frame, job.grid.tile(tile), ledger.planned(tile), last_question_});
@@ -192,9 +214,10 @@ void FrameLifecycle::bring_back(ScheduledJob& job, FrameSlot& slot) {
   restart(job, slot);
 }
 
-void FrameLifecycle::void_suspect_tiles(ScheduledJob& job, FrameSlot& slot) {
+void FrameLifecycle::void_suspect_tiles(const ScheduledJob& job, FrameSlot& slot) {
   if (slot.phase != FramePhase::rendering) return;
   for (const uint32_t tile : slot.ledger->newly_suspect()) {
+    films_.take(job, slot);
     records_.persist(TileVoidedRecord{job.id, slot.frame, job.grid.tile(tile)});
   }
 }

@@ -27,6 +27,7 @@ class FrameLifecycle {
 
   void on(const FrameOpened& e);
   void on(const FrameRefused& e);
+  void on(const FilmSetAside& e);
   void on(const FinishDone& e);
   void on(const FinishFailed& e);
   void on(const TileJudged& e);
@@ -35,6 +36,10 @@ class FrameLifecycle {
   /// threads, or those that are open have workers enough: the next scene is there before the last
   /// unit of this one is gone, and not much earlier.
   void open(ScheduledJob& job);
+  /// Whether the film of the frame, which is in memory, can be set aside.
+  static bool may_leave(const FrameSlot& slot);
+  /// Has the film of a frame that may_leave() set aside.
+  void set_aside(const ScheduledJob& job, FrameSlot& slot);
   /// Every film of the frame is durable: its outputs are made.
   void finish(ScheduledJob& job, FrameSlot& slot);
   /// Finishes a frame that is being rendered, if every film of it is durable and none is suspect.
@@ -54,7 +59,7 @@ class FrameLifecycle {
   void bring_back(ScheduledJob& job, FrameSlot& slot);
   /// Has the suspect tiles of a frame that is being rendered voided. (Where its outputs are being
   /// made, that happens once they are.)
-  void void_suspect_tiles(ScheduledJob& job, FrameSlot& slot);
+  void void_suspect_tiles(const ScheduledJob& job, FrameSlot& slot);
 
   /// It is durable that the frame is done or has failed, as `phase` says.
   void over(ScheduledJob& job, FrameSlot& slot, FramePhase phase);

@@ -50,6 +50,7 @@ std::vector<uint32_t> FrameLedger::to_judge() const {
 bool FrameLedger::judge(uint32_t tile, uint64_t serial, bool enough) {
   if (tile >= rounds_of_.size() || rounds_of_[tile].asked != serial) return false;
   rounds_of_[tile].asked = 0;
+  --questions_;
   if (is_suspect(tile)) return false;
   if (enough) {
     rounds_of_[tile].enough = true;
@@ -78,6 +79,7 @@ void FrameLedger::begin_rounds_again(uint32_t tile) {
   const uint32_t fewer = rounds.planned - rounds_.front();
   total_ -= fewer;
   free_ -= fewer;
+  if (rounds.asked != 0) --questions_;
   rounds = {rounds_.front()};
   std::erase_if(open_, [tile](const Extent& e) { return e.tile == tile; });
   failed_.take_overlapping({tile, {0, batches_}});

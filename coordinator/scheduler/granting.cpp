@@ -25,6 +25,10 @@ constexpr size_t kMostOfALease = 64;
 constexpr Duration kLookAgain = std::chrono::seconds(1);
 /// Pictures of frames in work are asked for again about every second by who looks at them.
 constexpr Duration kWatchedFor = std::chrono::seconds(10);
+/// How often it is looked at which films can be set aside, while some have to.
+constexpr Duration kRoomEvery = std::chrono::seconds(1);
+/// A frame of which nobody has had a unit for so long makes room for others.
+constexpr Duration kIdle = std::chrono::seconds(10);
 /// How many frames of an owner's are considered that have workers enough.
 constexpr size_t kPlacesLookedAt = 12;
 
@@ -69,6 +73,7 @@ void Granting::on(const FrameWatched& e) {
 void Granting::on(const Tick&) {
   if (step_.now >= records_.blocked_until()) step_.work_appeared = true;
   turned_away_ = false;
+  make_room();
 }
 
 void Granting::serve(WorkerId id, Worker& worker, bool copies) {
@@ -85,7 +90,7 @@ void Granting::serve(WorkerId id, Worker& worker, bool copies) {
 
 void Granting::dispatch() {
   if (!may_lease()) return;
-  if (films_.refused() && !any_film_in_work()) films_.serve_refused();
+  if (films_.refused() && !next_room_) next_room_ = step_.now;
   const bool copies = copies_.begin_round();
   if (!copies && !step_.work_appeared) return;
   step_.work_appeared = false;
@@ -103,6 +108,7 @@ void Granting::dispatch() {
 std::optional<TimePoint> Granting::next_wake() const {
   std::optional<TimePoint> wake;
   if (turned_away_) wake = step_.now + kLookAgain;
+  if (next_room_) wake = wake ? std::min(*wake, *next_room_) : next_room_;
   if (held_ || workers_.waiting().empty()) return wake;
   const std::optional<TimePoint> copies = copies_.next_wake();
   return wake && copies ? std::min(*wake, *copies) : copies ? copies : wake;
@@ -305,12 +311,51 @@ std::optional<FramePlace> Granting::find_loaded(WorkerId id, const Worker& worke
   return std::nullopt;
 }
 
-/// Whether the frame has a film, or it fits beside those of other frames; or nothing gets on with
-/// those any more, so that they hold nobody up for ever: their jobs are paused, or have no workers.
+/// Whether the frame has a film, or it fits beside those of other frames; or these cannot be set
+/// aside though nobody works at any.
 bool Granting::film_fits(const ScheduledJob& job, const FrameSlot& slot) const {
-  if (slot.film || films_.has_room(job) || !any_film_in_work()) return true;
-  films_.refuse();
+  if (slot.film || films_.has_room(job)) return true;
+  if (crammed_ && films_.has_room_in_need(job) && !any_film_in_work()) return true;
+  films_.refuse(job);
   return false;
+}
+
+/// Has films set aside: those of paused jobs in any case, as they may stay so for ever, and where
+/// others have no room those of frames that nobody has worked at for a while, which hold nobody up
+/// so: their jobs have no workers.
+void Granting::make_room() {
+  if (!next_room_ || step_.now < *next_room_) return;
+  bool paused = false;  // films of paused jobs are there
+  bool soon = false;    // some can be set aside later
+  uint64_t leaving = 0;
+  std::vector<FramePlace> idle;
+  for (const auto& [id, index] : films_.holders()) {
+    const FramePlace place{jobs_.find(id), index};
+    FrameSlot& slot = place.frame();
+    paused = paused || place.job->paused;
+    if (!slot.leaving && slot.stays_until <= step_.now && FrameLifecycle::may_leave(slot)) {
+      if (place.job->paused) {
+        frames_.set_aside(*place.job, slot);
+      } else if (step_.now - std::max(slot.last_leased, slot.film_since) >= kIdle) {
+        idle.push_back(place);
+      } else {
+        soon = true;
+      }
+    }
+    if (slot.leaving) leaving += place.job->plan.film_bytes;
+  }
+  std::stable_sort(idle.begin(), idle.end(), [](const FramePlace& a, const FramePlace& b) {
+    return a.frame().last_leased < b.frame().last_leased;
+  });
+  for (const FramePlace& place : idle) {
+    if (!films_.refused() || leaving >= films_.lacking()) break;
+    frames_.set_aside(*place.job, place.frame());
+    leaving += place.job->plan.film_bytes;
+  }
+  crammed_ = films_.refused() && leaving == 0 && !soon;
+  if (crammed_ && !any_film_in_work()) films_.serve_refused();
+  next_room_.reset();
+  if (films_.refused() || paused) next_room_ = step_.now + kRoomEvery;
 }
 
 /// Whether a unit is out, a film is on its way to the disk, or a frame is being finished: there

@@ -36,6 +36,8 @@ class Granting {
   void dispatch();
   /// When somebody who waits may be served without any other event.
   std::optional<TimePoint> next_wake() const;
+  /// A job is paused: whether its films can be set aside is looked at soon.
+  void look_for_room() { next_room_ = step_.now; }
   /// Whether a frame of the job could begin if there were more room for films.
   bool waits_for_film(const ScheduledJob& job) const;
 
@@ -64,6 +66,7 @@ class Granting {
   uint32_t run_length_of(const ScheduledJob& job, const FrameSlot& slot, uint32_t tile) const;
   bool film_fits(const ScheduledJob& job, const FrameSlot& slot) const;
   bool any_film_in_work() const;
+  void make_room();
 
   const SchedulerOptions& options_;
   Step& step_;
@@ -76,6 +79,9 @@ class Granting {
   HedgedCopies& copies_;
   FrameLifecycle& frames_;
   bool held_ = false;  ///< LeasingHeld
+  /// When it is looked at next which films can be set aside; nothing while none has to.
+  std::optional<TimePoint> next_room_;
+  bool crammed_ = false;  ///< films have no room, and none of those that are there can be set aside
   bool turned_away_ =
       false;  ///< somebody came too late for a frame, or rests: to be looked at again
 };

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <memory>
+#include <set>
 
 namespace hyades::coordinator {
 
@@ -42,6 +43,7 @@ void JobLifecycle::restore(ScheduledJob& job, const RestoredJob& restored) {
       ++job.frames_failed;
     }
   }
+  const std::set<int32_t> aside(restored.set_aside.begin(), restored.set_aside.end());
   for (const AcceptedUnit& accepted : restored.accepted) {
     FrameSlot* slot = job.slot(accepted.unit.frame);
     const auto extent = job.extent_of(accepted.unit);
@@ -50,7 +52,7 @@ void JobLifecycle::restore(ScheduledJob& job, const RestoredJob& restored) {
       slot->ledger =
           std::make_unique<FrameLedger>(job.grid.order(), job.plan.batches, job.plan.rounds);
       slot->worker_class = class_id(accepted.worker_class);
-      films_.take(job, *slot);
+      if (!aside.contains(slot->frame)) films_.take(job, *slot);
     }
     if (slot->ledger->any_held(*extent)) continue;
     slot->ledger->plan_for(*extent);

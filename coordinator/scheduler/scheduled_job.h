@@ -39,7 +39,10 @@ enum class FramePhase : uint8_t {
 struct FrameSlot {
   int32_t frame = 0;
   FramePhase phase = FramePhase::waiting;
-  bool film = false;  ///< its film is in memory, or will be with its first unit
+  bool film = false;      ///< its film is in memory, or will be with its first unit
+  TimePoint film_since;   ///< when it came into memory
+  bool leaving = false;   ///< SetAside was said of it and not answered
+  TimePoint stays_until;  ///< it could not be set aside: not before this
   uint32_t finish_attempts = 0;
   bool suspect = false;    ///< while it is opened or finished, a worker that had a part was found
                            ///< divergent

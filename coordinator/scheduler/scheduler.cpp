@@ -59,7 +59,10 @@ std::vector<Action> Scheduler::handle(const Event& event, TimePoint now) {
   std::visit(
       core::Overloaded{
           [&](const JobAdded& e) { p.job_lifecycle.on(e); },
-          [&](const JobPaused& e) { p.job_lifecycle.on(e); },
+          [&](const JobPaused& e) {
+            p.job_lifecycle.on(e);
+            p.granting.look_for_room();
+          },
           [&](const JobResumed& e) { p.job_lifecycle.on(e); },
           [&](const JobCancelled& e) { p.job_lifecycle.on(e); },
           [&](const JobReprioritised& e) { p.job_lifecycle.on(e); },
@@ -67,6 +70,7 @@ std::vector<Action> Scheduler::handle(const Event& event, TimePoint now) {
           [&](const FramesSuspected& e) { p.job_lifecycle.on(e); },
           [&](const FrameOpened& e) { p.frames.on(e); },
           [&](const FrameRefused& e) { p.frames.on(e); },
+          [&](const FilmSetAside& e) { p.frames.on(e); },
           [&](const FinishDone& e) { p.frames.on(e); },
           [&](const FinishFailed& e) { p.frames.on(e); },
           [&](const TileJudged& e) { p.frames.on(e); },

@@ -29,8 +29,8 @@ struct SchedulerOptions {
   /// So many units that a worker has failed one after the other and others then rendered put it
   /// into quarantine.
   uint32_t max_failures = 5;
-  /// Bytes that films of frames in work may take together; a frame begins (gets its first unit)
-  /// when its own fits, or nothing else is in work.
+  /// Bytes that films may take together; a frame begins (gets its first unit) when its own fits, or
+  /// it is the only one. Where films cannot be set aside it is a quarter more.
   uint64_t film_memory = UINT64_MAX;
   /// Nothing is leased for this long after something could not be made durable.
   Duration storage_retry = std::chrono::seconds(1);

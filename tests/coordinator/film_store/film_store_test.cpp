@@ -3,11 +3,15 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <atomic>
 #include <condition_variable>
 #include <cstdlib>
 #include <fstream>
 #include <mutex>
 #include <set>
+#include <string>
+#include <vector>
 
 #include "coordinator/film_store/film_store.h"
 #include "tests/coordinator/film_store/fake_film.h"
@@ -21,8 +25,9 @@ constexpr uint32_t kFilmSamples = 16;
 /// A film store on files in memory, and somebody who merges what is durable.
 class Kept final : public FilmStore::Listener {
  public:
-  explicit Kept(FaultyFiles& files, Duration patience = std::chrono::seconds(30))
-      : film_store_(films(), log(files, patience), *this) {
+  explicit Kept(FaultyFiles& files, Duration patience = std::chrono::seconds(30),
+                KeptFilms before = KeptFilms::erase)
+      : film_store_(films(), log(files, patience, before), *this) {
     EXPECT_TRUE(film_store_.open().ok());
     EXPECT_TRUE(film_store_.start(16).ok());
   }
@@ -56,7 +61,41 @@ class Kept final : public FilmStore::Listener {
     on_its_thread([] {});  // and dealt with
   }
 
-  void outgrown(int32_t, const std::string&) override {}
+  bool set_aside(int32_t frame) {
+    bool done = false;
+    on_its_thread([&] { done = film_store_.set_aside(frame).ok(); });
+    return done;
+  }
+  bool is_aside(int32_t frame) {
+    bool aside = false;
+    on_its_thread([&] { aside = film_store_.is_aside(frame); });
+    return aside;
+  }
+  /// Of what is in memory of the frame; empty: nothing is.
+  std::string digest(int32_t frame) {
+    std::string digest;
+    on_its_thread([&] {
+      if (const auto film = film_store_.film(frame)) digest = film->digest();
+    });
+    return digest;
+  }
+  std::string digest_aside(int32_t frame) {
+    std::string digest;
+    on_its_thread([&] {
+      if (const auto film = film_store_.read_aside(frame); film && *film) {
+        digest = (*film)->digest();
+      }
+    });
+    return digest;
+  }
+  bool fetch(int32_t frame) {
+    bool done = false;
+    on_its_thread([&] { done = film_store_.fetch(frame); });
+    return done;
+  }
+  int outgrown() const { return outgrown_; }
+
+  void outgrown(int32_t, const std::string&) override { ++outgrown_; }
   void persisted(RecordId record) override {
     EXPECT_TRUE(film_store_.merge(record).ok());
     const std::lock_guard lock(mutex_);
@@ -74,8 +113,9 @@ class Kept final : public FilmStore::Listener {
 
  private:
   static FilmSet films() { return {{1, 2}, {0, 0, 64, 16}, kFilmSamples}; }
-  static FilmStoreOptions log(FaultyFiles& files, Duration patience) {
+  static FilmStoreOptions log(FaultyFiles& files, Duration patience, KeptFilms before) {
     FilmStoreOptions log;
+    log.kept = before;
     log.patience = patience;
     log.folder = "films";
     log.files = &files;
@@ -99,6 +139,7 @@ class Kept final : public FilmStore::Listener {
   std::set<RecordId> durable_;
   uint64_t records_ = 0;
   int told_ = 0;  ///< of trouble
+  std::atomic<int> outgrown_{0};
   FilmStore film_store_;
 };
 
@@ -186,6 +227,77 @@ TEST(FilmStoreDeathTest, WithoutMoreThreadsItIsNotOpenedAndMayBeLater) {
     return films.open().ok() && films.start(16).ok() ? 0 : 2;
   };
   EXPECT_EXIT(std::_Exit(try_it()), testing::ExitedWithCode(0), "");
+}
+
+TEST(FilmStore, AFilmThatIsSetAsideTakesNoMemoryAndComesBack) {
+  FaultyFiles files;
+  Kept kept(files);
+  for (int i = 0; i < 3; ++i) ASSERT_TRUE(kept.keep(1, tile(i)));
+  const std::string before = kept.digest(1);
+  ASSERT_NE(before, "");
+  EXPECT_TRUE(kept.set_aside(1));
+  EXPECT_TRUE(kept.is_aside(1));
+  EXPECT_EQ(kept.digest(1), "");
+  EXPECT_EQ(kept.digest_aside(1), before);
+  EXPECT_TRUE(kept.is_aside(1)) << "looking at it changes nothing";
+  EXPECT_TRUE(kept.fetch(1));
+  EXPECT_EQ(kept.digest(1), before);
+  EXPECT_FALSE(kept.is_aside(1));
+  // What is merged with it fetches it, too.
+  EXPECT_TRUE(kept.set_aside(1));
+  ASSERT_TRUE(kept.keep(1, tile(3)));
+  FaultyFiles other_files;
+  Kept other(other_files);
+  for (int i = 0; i < 4; ++i) ASSERT_TRUE(other.keep(1, tile(i)));
+  EXPECT_EQ(kept.digest(1), other.digest(1));
+  EXPECT_TRUE(kept.set_aside(2)) << "there is none";
+  EXPECT_EQ(kept.outgrown(), 0);
+}
+
+TEST(FilmStore, FilmsThatAreSetAsideStayInTheLog) {
+  FaultyFiles files;
+  std::string before;
+  {
+    Kept kept(files);
+    for (int i = 0; i < 3; ++i) ASSERT_TRUE(kept.keep(1, tile(i)));
+    for (int i = 0; i < 3; ++i) ASSERT_TRUE(kept.keep(2, tile(i)));
+    before = kept.digest(1);
+    EXPECT_TRUE(kept.set_aside(1));
+    kept.finish(2);
+    kept.make_room();  // the log is rewritten
+    EXPECT_TRUE(kept.is_aside(1));
+  }
+  const std::vector<std::string> left = files.paths();
+  EXPECT_TRUE(std::any_of(left.begin(), left.end(),
+                          [](const std::string& path) { return path.ends_with(".aside"); }));
+  Kept again(files, std::chrono::seconds(30), KeptFilms::require);
+  EXPECT_EQ(again.digest(1), before);
+  for (const std::string& path : files.paths()) EXPECT_FALSE(path.ends_with(".aside")) << path;
+}
+
+TEST(FilmStore, AFilmForWhichTheDiskHasNoRoomStays) {
+  FaultyFiles files;
+  Kept kept(files);
+  for (int i = 0; i < 3; ++i) ASSERT_TRUE(kept.keep(1, tile(i)));
+  const std::string before = kept.digest(1);
+  const size_t paths = files.paths().size();
+  files.set_capacity(size_of(files) + 100);
+  EXPECT_FALSE(kept.set_aside(1));
+  EXPECT_EQ(kept.digest(1), before);
+  EXPECT_EQ(files.paths().size(), paths);
+}
+
+TEST(FilmStore, AFilmThatCannotBeFetchedFailsItsFrame) {
+  FaultyFiles files;
+  Kept kept(files);
+  ASSERT_TRUE(kept.keep(1, tile(0)));
+  EXPECT_TRUE(kept.set_aside(1));
+  for (const std::string& path : files.paths()) {
+    if (!path.ends_with(".aside")) continue;
+    EXPECT_TRUE(files.truncate(path, 40).ok());
+  }
+  EXPECT_FALSE(kept.fetch(1));
+  EXPECT_EQ(kept.outgrown(), 1);
 }
 
 }  // namespace

@@ -8,6 +8,7 @@ using Bench = SchedulerBench;
 
 constexpr JobId kOther{2};
 constexpr JobId kThird{3};
+constexpr WorkerId kChoosy{3};
 
 class FilmRoom : public testing::Test {
  protected:
@@ -38,6 +39,10 @@ class FilmRoom : public testing::Test {
     const Lease lease = b.only<Lease>();
     EXPECT_EQ(lease.worker, kBert);
     EXPECT_EQ(lease.job, job);
+  }
+  void tick() {
+    b.now += std::chrono::seconds(1);
+    b.tell(Tick{});
   }
   Bench b{with_memory()};
 };
@@ -72,39 +77,137 @@ TEST_F(FilmRoom, OneFrameIsAlwaysPossible) {
   EXPECT_EQ(b.ask(kAnna).job, kJob);
 }
 
-TEST_F(FilmRoom, PausedJobsHoldNobodyUp) {
+TEST_F(FilmRoom, FilmsOfPausedJobsAreSetAside) {
   add(kJob, plan(60, 2));
   add(kOther, plan(60));
   const Lease lease = b.ask(kAnna);
   b.tell(JobPaused{kJob});
   expect_bert_waits();  // for what Anna still has
+  tick();
+  EXPECT_TRUE(b.all<SetAside>().empty());
   b.deliver_durably(lease);
-  b.tell(Tick{});
-  EXPECT_EQ(b.scheduler.films(), 120U);
-  EXPECT_GT(b.scheduler.leased_units(kOther), 0U);
-}
-
-TEST_F(FilmRoom, JobsWithoutWorkersHoldNobodyUp) {
-  add(kJob, plan(60, 2));
-  add(kOther, plan(60));
-  b.ask(kAnna);
-  b.tell(JobPaused{kJob});
-  expect_bert_waits();
-  b.tell(WorkerLost{kAnna});
+  tick();
+  EXPECT_EQ(b.only<SetAside>().frame, 1);
+  EXPECT_EQ(b.scheduler.films(), 60U) << "until it is";
+  b.tell(FilmSetAside{kJob, 1, true});
   expect_bert_gets(kOther);
+  const Lease berts = b.only<Lease>();
+  EXPECT_EQ(b.scheduler.films(), 60U);
+  // Now it is the other that has to wait.
+  b.tell(JobResumed{kJob});
+  EXPECT_TRUE(b.scheduler.waits_for_film(kJob));
+  b.deliver_durably(berts);
+  b.tell(WorkRequested{kAnna, 1});
+  b.tell(FinishDone{kOther, 1});
+  b.tell(Persisted{b.only<Persist>().id});
+  EXPECT_EQ(b.only<Lease>().job, kJob);
 }
 
-TEST_F(FilmRoom, RecordsOfACancelledJobThatNobodyAnswersHoldNobodyUp) {
+// They may stay so for ever, and all open jobs' are too many for a machine.
+TEST_F(FilmRoom, FilmsOfPausedJobsLeaveThoughNobodyWaitsForRoom) {
   add(kJob, plan(60, 2));
   b.deliver_durably(b.ask(kAnna));
   b.tell(JobPaused{kJob});
-  add(kThird, plan(10));
+  ASSERT_TRUE(b.scheduler.next_wake());
+  EXPECT_LE(*b.scheduler.next_wake(), b.now);
+  tick();
+  EXPECT_EQ(b.only<SetAside>().job, kJob);
+  b.tell(FilmSetAside{kJob, 1, true});
+  EXPECT_EQ(b.scheduler.films(), 0U);
+  tick();
+  EXPECT_TRUE(b.said.empty());
+}
+
+// What a few begin and leave does not grow beyond what there is.
+TEST_F(FilmRoom, FilmsThatNobodyWorksAtNeverTakeMoreThanThereIs) {
+  JobPlan large = plan(90, 2);
+  for (uint64_t job = 1; job <= 20; ++job) {
+    large.needs.tags = {std::to_string(job)};  // each has a worker of its own
+    b.tell(WorkerJoined{kChoosy, 1, "class", {}, large.needs.tags});
+    add(JobId{job}, large);
+    b.tell(WorkRequested{kChoosy, 1});
+    for (int i = 0; i < 30 && b.all<Lease>().empty(); ++i) {
+      tick();
+      for (const SetAside& aside : b.all<SetAside>()) {
+        b.tell(FilmSetAside{aside.job, aside.frame, true});
+      }
+    }
+    ASSERT_EQ(b.only<Lease>().job, JobId{job});
+    EXPECT_LE(b.scheduler.films(), 100U);
+    b.deliver_durably(b.only<Lease>());
+    if (job % 2 == 0) b.tell(JobPaused{JobId{job}});
+    b.tell(WorkerLost{kChoosy});
+  }
+}
+
+TEST_F(FilmRoom, JobsWithoutWorkersHoldNobodyUp) {
+  JobPlan choosy = plan(60, 2);
+  choosy.needs.tags = {"gpu"};
+  b.tell(WorkerJoined{kChoosy, 1, "class", {}, {"gpu"}});
+  add(kJob, choosy);
+  b.deliver_durably(b.ask(kChoosy));
+  b.tell(WorkerLost{kChoosy});
+  add(kOther, plan(60));
+  expect_bert_waits();
+  tick();
+  EXPECT_TRUE(b.all<SetAside>().empty()) << "it may come back";
+  b.now += std::chrono::seconds(10);
+  tick();
+  EXPECT_EQ(b.only<SetAside>().job, kJob);
+  b.tell(FilmSetAside{kJob, 1, true});
+  expect_bert_gets(kOther);
+}
+
+TEST_F(FilmRoom, WhereFilmsCannotBeSetAsideThereIsALittleMoreRoom) {
+  add(kJob, plan(60, 2));
+  b.deliver_durably(b.ask(kAnna));
+  b.tell(JobPaused{kJob});
+  tick();
+  b.tell(FilmSetAside{kJob, 1, false});
+  add(kOther, plan(66));
+  add(kThird, plan(65));
+  expect_bert_waits();
+  tick();
+  EXPECT_TRUE(b.all<Lease>().empty());
+  b.tell(JobCancelled{kOther});
+  tick();
+  expect_bert_gets(kThird);
+  EXPECT_EQ(b.scheduler.films(), 125U);
+  b.now += std::chrono::seconds(10);
+  tick();
+  EXPECT_EQ(b.only<SetAside>().job, kJob) << "it is tried again";
+}
+
+TEST_F(FilmRoom, AFilmThatIsNeededAgainStays) {
+  add(kJob, plan(60, 2));
+  b.deliver_durably(b.ask(kAnna));
+  b.tell(JobPaused{kJob});
+  tick();
+  b.only<SetAside>();
+  b.tell(JobResumed{kJob});
+  EXPECT_EQ(b.ask(kAnna).job, kJob);
+  b.tell(FilmSetAside{kJob, 1, true});
+  EXPECT_EQ(b.scheduler.films(), 60U);
+}
+
+TEST_F(FilmRoom, FilmsFromBeforeARestartMayBeSetAsideAlready) {
+  RestoredJob restored;
+  restored.accepted.push_back({{1, {0, 0, 32, 32}, {0, 1}}, digest(1), "class"});
+  restored.set_aside = {1};
+  add(kJob, plan(60, 2), restored);
+  EXPECT_EQ(b.scheduler.films(), 0U);
+  EXPECT_EQ(b.ask(kAnna).units.at(0).tile.x0, 32);
+  EXPECT_EQ(b.scheduler.films(), 60U);
+}
+
+TEST_F(FilmRoom, RecordsOfACancelledJobThatNobodyAnswersHoldNobodyUp) {
+  add(kJob, plan(90));
   b.deliver(b.ask(kAnna));
   const RecordId film = b.only<Persist>().id;
   add(kOther, plan(60, 2));
   expect_bert_waits();  // for the film on its way to the disk
   // Its store ends before it has begun.
-  b.tell(JobCancelled{kThird});
+  b.tell(JobCancelled{kJob});
   expect_bert_gets(kOther);
   // Should an answer come after all, nothing follows from it.
   b.tell(PersistFailed{film, "disk full"});

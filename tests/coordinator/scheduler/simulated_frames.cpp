@@ -15,6 +15,11 @@ void SimulatedWorld::act(const OpenFrame& a) {
   }
 }
 
+void SimulatedWorld::act(const SetAside& a) {
+  ++films_set_aside;
+  tell_later(FilmSetAside{a.job, a.frame, !fault()});
+}
+
 core::Film SimulatedWorld::oracle_of(const SimJob& job, int32_t number) {
   if (job.plan.rounds.empty()) return job.disk->oracle(number);
   core::Film film = job.disk->blank();

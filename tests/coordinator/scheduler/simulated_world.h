@@ -53,6 +53,7 @@ class SimulatedWorld {
   uint64_t frames_wrong = 0;  ///< finished before anybody compared
   uint64_t tiles_judged = 0;
   uint64_t tiles_spared = 0;
+  uint64_t films_set_aside = 0;
   // Of the real store.
   uint64_t films_replayed = 0;
   uint64_t power_cuts = 0;
@@ -126,6 +127,7 @@ class SimulatedWorld {
   /// The film that the frame must have in the end.
   static core::Film oracle_of(const SimJob& job, int32_t number);
   void act(const OpenFrame& a);
+  void act(const SetAside& a);
   void act(const FinishFrame& a);
   void act(const FrameDone& a);
   void act(const FrameFailed& a);

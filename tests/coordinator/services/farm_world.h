@@ -285,4 +285,17 @@ class FarmWorld {
   std::unique_ptr<v1::Farm::Stub> farm_;
 };
 
+/// The film of a frame, also one that grows.
+inline grpc::Status fetch_film(const FarmWorld& world, uint64_t job, int32_t frame,
+                               std::string& bytes) {
+  v1::FilmRequest request;
+  request.set_job(job);
+  request.set_frame(frame);
+  const auto context = world.context();
+  const auto reader = world.jobs->Film(context.get(), request);
+  v1::FilmPart part;
+  while (reader->Read(&part)) bytes += part.chunk().data();
+  return reader->Finish();
+}
+
 }  // namespace hyades::coordinator

@@ -22,17 +22,6 @@ core::Film truth(int32_t frame) {
                    FarmWorld::kSamples, core::make_film_layout({}));
 }
 
-grpc::Status fetch_film(const FarmWorld& world, uint64_t job, int32_t frame, std::string& bytes) {
-  v1::FilmRequest request;
-  request.set_job(job);
-  request.set_frame(frame);
-  const auto context = world.context();
-  const auto reader = world.jobs->Film(context.get(), request);
-  v1::FilmPart part;
-  while (reader->Read(&part)) bytes += part.chunk().data();
-  return reader->Finish();
-}
-
 TEST(Keeping, FilmsOfFinishedFramesStayWhereTheJobSaysSo) {
   FarmWorld world;
   world.start();
