@@ -3,11 +3,9 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdlib>
-#include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
-#include <system_error>
 #include <utility>
 
 #include <fmt/format.h>
@@ -17,6 +15,7 @@
 #include "coordinator/controller/job_recovery.h"
 #include "coordinator/controller/job_steering.h"
 #include "coordinator/controller/not_found.h"
+#include "coordinator/controller/remove_folder.h"
 #include "coordinator/controller/sweeper.h"
 #include "coordinator/controller/video_maker.h"
 #include "core/base/failpoint.h"
@@ -340,9 +339,8 @@ grpc::Status JobIntake::may_reopen(uint64_t id, StoredJob& job) {
   return has_room_for(job.owner, {job.frames, memory_of(job)});
 }
 
-grpc::Status JobIntake::remove(uint64_t id) {
-  const auto one = context_.wait_for_submissions();
-  if (!one) return others_submit();
+/// Whether the job has ended, and what is left of it is stored.
+grpc::Status JobIntake::may_remove(uint64_t id) {
   {
     const StateLock lock(context_.mutex);
     const ActiveJob* active = jobs_.find(id);
@@ -352,12 +350,15 @@ grpc::Status JobIntake::remove(uint64_t id) {
     }
     if (jobs_.recovering().contains(id)) return is_taken_up(id);
   }
-  if (const grpc::Status left = wait_until_left(id); !left.ok()) return left;
+  return wait_until_left(id);
+}
+
+grpc::Status JobIntake::remove(uint64_t id) {
+  if (const grpc::Status may = may_remove(id); !may.ok()) return may;
   const auto stored = context_.store->job(id);
   if (const grpc::Status there = job_is_there(id, stored); !there.ok()) return there;
-  if (core::Status gone = forget(id); !gone) return farm::unavailable(gone.error());
-  videos_.forget(id);
-  // Its files have been of use until now: they stay for a while, should it come again.
+  // Its files have been of use until now: they stay for a while, should it come again. They may be
+  // many, and others submit meanwhile.
   v1::JobSpec spec;
   if (spec.ParseFromString((*stored)->spec)) {
     for (const v1::JobFile& file : spec.files()) {
@@ -366,27 +367,30 @@ grpc::Status JobIntake::remove(uint64_t id) {
       }
     }
   }
-  sweeper_.job_removed();
+  {
+    const auto one = context_.wait_for_submissions();
+    if (!one) return others_submit();
+    // Somebody may have retried or removed it.
+    if (const grpc::Status may = may_remove(id); !may.ok()) return may;
+    const auto still = context_.store->state(id);
+    if (const grpc::Status there = job_is_there(id, still); !there.ok()) return there;
+    if (core::Status gone = forget(id); !gone) return farm::unavailable(gone.error());
+  }
+  timelines_.forget(id);
+  videos_.forget(id);
+  sweeper_.job_removed(id, (*stored)->owner);
   return grpc::Status::OK;
 }
 
-/// Forgets what is stored of the job and removes its folders.
+/// Has the store forget the job.
 core::Status JobIntake::forget(uint64_t id) {
-  const auto remove_folders = [&] {
-    std::error_code ignored;  // what stays is found after the next start
-    std::filesystem::remove_all(context_.films_folder(id), ignored);
-    std::filesystem::remove_all(context_.output_folder(id), ignored);
-  };
+  constexpr uint64_t kFiles = 1000;  // others wait
   core::Status removed = context_.store->remove_job(id);
-  if (!removed) {
-    // A full disk cannot even store that the job is gone: what is to go makes the room.
-    remove_folders();
-    removed = context_.store->remove_job(id);
-  }
-  if (!removed) return removed;
-  timelines_.forget(id);
-  remove_folders();
-  return {};
+  if (removed) return removed;
+  // A full disk cannot even store that the job is gone: what is to go makes the room.
+  remove_some(context_.films_folder(id), kFiles);
+  remove_some(context_.output_folder(id), kFiles);
+  return context_.store->remove_job(id);
 }
 
 }  // namespace hyades::coordinator

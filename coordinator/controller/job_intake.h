@@ -74,6 +74,7 @@ class JobIntake {
       HYADES_EXCLUDES(state_lock);
   grpc::Status files_are_here(const v1::JobSpec& spec);
   grpc::Status wait_until_left(uint64_t job) HYADES_EXCLUDES(state_lock);
+  grpc::Status may_remove(uint64_t job) HYADES_EXCLUDES(state_lock);
 
   ControllerContext& context_;
   Dispatcher& dispatcher_;

@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "coordinator/controller/remove_folder.h"
 #include "farm/wire.h"
 
 namespace hyades::coordinator {
@@ -18,6 +19,12 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr uint32_t kPage = 64;  // jobs whose files are looked at without a pause for others
+constexpr uint64_t kRows = 0;   // no job has this number
+/// Of what is left of removed jobs, with a pause between two pieces.
+constexpr uint32_t kPieceRows = 500;
+constexpr uint64_t kPieceFiles = 1000;
+constexpr Duration kPieceEvery = std::chrono::milliseconds(10);
+constexpr Duration kTryAgain = std::chrono::seconds(1);
 constexpr Duration kShortestRound = std::chrono::milliseconds(100);
 constexpr Duration kLongestRound = std::chrono::minutes(10);
 
@@ -36,6 +43,36 @@ std::vector<uint64_t> numbered_folders(const std::string& folder) {
 
 }  // namespace
 
+void Sweeper::job_removed(uint64_t job, const std::string& owner) {
+  ++changes_;
+  drop_rows();
+  drop_folders(job, owner);
+}
+
+/// Has the rows of removed jobs dropped, of whichever.
+void Sweeper::drop_rows() {
+  leftovers_.add(kRows, [this] {
+    if (context_.stop) return true;
+    const TimePoint now = std::chrono::steady_clock::now();
+    if (now < drop_again_) return false;
+    const auto more = context_.store->drop_removed(kPieceRows);
+    if (!more) drop_again_ = now + kTryAgain;  // the disk is full
+    return more && !*more;
+  });
+}
+
+/// Has the folders of a job removed that is not in the store any more. Its number is never given to
+/// another, so that nobody else needs them.
+void Sweeper::drop_folders(uint64_t job, const std::string& owner) {
+  leftovers_.add(
+      job,
+      [this, job] {
+        return context_.stop || (remove_some(context_.films_folder(job), kPieceFiles) &&
+                                 remove_some(context_.output_folder(job), kPieceFiles));
+      },
+      owner);
+}
+
 /// Removes folders of jobs that are deleted, and films of jobs that are done: a crash came between.
 /// Whether the store has answered for all.
 bool Sweeper::sweep_folders() {
@@ -46,9 +83,12 @@ bool Sweeper::sweep_folders() {
       const std::lock_guard one(context_.submissions);
       const auto state = context_.store->state(id);
       if (context_.stop || !state) return false;
-      const bool useless = !*state || (folder.ends_with("/films/") && **state == StoredState::done);
       std::error_code ignored;
-      if (useless) fs::remove_all(folder + std::to_string(id), ignored);
+      if (!*state) {
+        drop_folders(id, {});
+      } else if (folder.ends_with("/films/") && **state == StoredState::done) {
+        fs::remove_all(folder + std::to_string(id), ignored);
+      }
     }
   }
   return true;
@@ -105,9 +145,11 @@ core::Status Sweeper::sweep_assets(Duration grace) {
 Sweeper::Sweeper(ControllerContext& context, UnclaimedFiles& unclaimed)
     : context_(context),
       unclaimed_(unclaimed),
-      rounds_(1, std::clamp(context.options.asset_grace / 4, kShortestRound, kLongestRound)) {}
+      rounds_(1, std::clamp(context.options.asset_grace / 4, kShortestRound, kLongestRound)),
+      leftovers_(2, kPieceEvery) {}
 
 void Sweeper::start() {
+  drop_rows();  // of jobs that were removed before a crash
   rounds_.add(0, [this] {
     if (!folders_swept_) folders_swept_ = sweep_folders();
     // What fails now (a full disk, a damaged record) is tried again; nothing was removed wrongly.

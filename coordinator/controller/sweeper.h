@@ -17,11 +17,17 @@ class Sweeper {
   Sweeper(ControllerContext& context, UnclaimedFiles& unclaimed);
   /// Sweeps from now on, from time to time, until end().
   void start();
-  void end() { rounds_.end(); }
-  /// Tells that a job has gone: what it needed may not be needed any more.
-  void job_removed() { ++changes_; }
+  void end() {
+    rounds_.end();
+    leftovers_.end();
+  }
+  /// Tells that a job has gone: what is left of it goes too, in pieces and turns of owners, and
+  /// what it needed may not be needed any more. Never waits.
+  void job_removed(uint64_t job, const std::string& owner);
 
  private:
+  void drop_rows();
+  void drop_folders(uint64_t job, const std::string& owner);
   bool sweep_folders();
   core::Status sweep_assets(Duration grace);
   core::Status spare_needed(std::unordered_set<std::string>& names, uint64_t& after);
@@ -32,7 +38,9 @@ class Sweeper {
   // Of the sweeping thread.
   uint64_t swept_changes_ = UINT64_MAX;  ///< when it last left nothing to remove
   bool folders_swept_ = false;
+  TimePoint drop_again_;  ///< of the task that drops rows
   farm::RetryQueue rounds_;
+  farm::RetryQueue leftovers_;  ///< a piece at a time, by the job's number, or kRows
 };
 
 }  // namespace hyades::coordinator

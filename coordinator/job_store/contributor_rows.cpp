@@ -58,7 +58,9 @@ core::Result<std::vector<JobFrames>> suspect_frames_of(sqlite3* db, const std::s
   const std::string mark = mark_of(worker);
   const std::string anybody = mark_of({});
   std::vector<JobFrames> jobs;
-  Query rows(db, "SELECT job, frame, workers FROM parts WHERE moment > ? ORDER BY job, frame");
+  Query rows(db,
+             "SELECT job, frame, workers FROM parts INDEXED BY parts_by_moment "
+             "WHERE moment > ? AND +job IN (SELECT id FROM jobs) ORDER BY job, frame");
   rows.bind(static_cast<int64_t>(since));
   while (rows.next()) {
     const std::string workers = rows.bytes(2);

@@ -152,8 +152,12 @@ class JobStore {
   virtual core::Result<std::optional<uint64_t>> job_of_key(const std::string& key) = 0;
   /// Stores all of the job but its key, spec, name, owner and options, which never change.
   virtual core::Status update_job(const StoredJob& job) = 0;
-  /// Forgets the job, its frames, outputs and lines.
+  /// Forgets the job: it has no frames, outputs and lines any more for whoever asks. On the disk
+  /// they stay until drop_removed() has been called often enough.
   virtual core::Status remove_job(uint64_t id) = 0;
+  /// Drops what is left of jobs that were removed, `rows` rows at most. Whether there was something
+  /// left, so that there may be more.
+  virtual core::Result<bool> drop_removed(uint32_t rows) = 0;
   /// The ids of jobs that have not ended, oldest first.
   virtual core::Result<std::vector<uint64_t>> open_jobs() = 0;
   /// Nothing where there is no such job.
@@ -175,7 +179,7 @@ class JobStore {
                                   const std::vector<StoredOutput>& outputs) = 0;
   /// The frames are to be rendered (again). All of it at once, or nothing.
   virtual core::Status forget_frames(uint64_t job, std::span<const int32_t> frames) = 0;
-  /// So are all that have failed, however many.
+  /// So are all that have failed, however many; after an error some may be, and others not.
   virtual core::Status forget_failed_frames(uint64_t job) = 0;
   /// Forgets the job's outputs whose path is one of `gone`, or lies in that folder, and adds
   /// `made`. All of it at once, or nothing.

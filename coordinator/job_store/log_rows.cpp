@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "coordinator/job_store/database.h"
+#include "coordinator/job_store/removals.h"
 
 namespace hyades::coordinator {
 
@@ -54,7 +55,8 @@ core::Result<std::vector<StoredLine>> read_lines(sqlite3* db, uint64_t job, uint
                                                  uint32_t limit) {
   Query rows(db,
              "SELECT time_ms, level, frame, worker, text, number FROM lines "
-             "WHERE job = ? AND number > ? ORDER BY number LIMIT ?");
+             "WHERE job = ?1 AND number > ?2" +
+                 kJobIsThere + "ORDER BY number LIMIT ?3");
   rows.bind(number(job)).bind(number(after)).bind(int64_t{limit});
   std::vector<StoredLine> lines;
   while (rows.next()) {

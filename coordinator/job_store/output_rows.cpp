@@ -1,6 +1,7 @@
 #include "coordinator/job_store/output_rows.h"
 
 #include "coordinator/job_store/database.h"
+#include "coordinator/job_store/removals.h"
 
 namespace hyades::coordinator {
 namespace {
@@ -39,32 +40,41 @@ core::Status put_outputs(sqlite3* db, uint64_t job, const std::vector<StoredOutp
 
 core::Status delete_outputs(sqlite3* db, uint64_t job, const std::vector<std::string>& paths) {
   for (const std::string& path : paths) {
-    Query gone(db,
-               "DELETE FROM outputs WHERE job = ? AND "
-               "(path = ? OR substr(path, 1, length(?)) = ?)");
-    const core::Status done =
-        gone.bind(number(job)).bind(path).bind(path + "/").bind(path + "/").run();
+    const core::Status done = Query(db, "DELETE FROM outputs WHERE job = ? AND path = ?")
+                                  .bind(number(job))
+                                  .bind(path)
+                                  .run();
     if (!done) return done;
+    // What lies in the folder, as the index by paths has it: '0' comes after '/'.
+    const core::Status below =
+        Query(db, "DELETE FROM outputs WHERE job = ? AND path > ? AND path < ?")
+            .bind(number(job))
+            .bind(path + "/")
+            .bind(path + "0")
+            .run();
+    if (!below) return below;
   }
   return {};
 }
 
 core::Result<std::vector<StoredOutput>> read_outputs(sqlite3* db, uint64_t job, uint64_t after,
                                                      uint32_t limit) {
-  Query rows(db, std::string(kSelect) + "WHERE job = ? AND number > ? ORDER BY number LIMIT ?");
+  Query rows(db, std::string(kSelect) + "WHERE job = ?1 AND number > ?2" + kJobIsThere +
+                     "ORDER BY number LIMIT ?3");
   rows.bind(number(job)).bind(number(after)).bind(int64_t{limit});
   return read_all(rows);
 }
 
 core::Result<std::vector<StoredOutput>> read_outputs_of(sqlite3* db, uint64_t job, int32_t frame) {
-  Query rows(db, std::string(kSelect) + "WHERE job = ? AND frame = ? ORDER BY path");
+  Query rows(
+      db, std::string(kSelect) + "WHERE job = ?1 AND frame = ?2" + kJobIsThere + "ORDER BY path");
   rows.bind(number(job)).bind(int64_t{frame});
   return read_all(rows);
 }
 
 core::Result<std::optional<StoredOutput>> read_output(sqlite3* db, uint64_t job,
                                                       const std::string& path) {
-  Query row(db, std::string(kSelect) + "WHERE job = ? AND path = ?");
+  Query row(db, std::string(kSelect) + "WHERE job = ?1 AND path = ?2" + kJobIsThere);
   row.bind(number(job)).bind(path);
   if (row.next()) return std::optional(read_row(row));
   if (core::Status status = row.status(); !status) return status.error();

@@ -142,6 +142,10 @@ ALTER TABLE jobs ADD COLUMN begun_ms INTEGER NOT NULL DEFAULT 0;
     R"(
 ALTER TABLE jobs ADD COLUMN busy_ns INTEGER NOT NULL DEFAULT 0;
 )",
+    R"(
+CREATE TABLE removals (job INTEGER PRIMARY KEY);  -- gone, with rows of it left: removals.h
+CREATE INDEX parts_by_moment ON parts (moment);
+)",
 };
 
 /// A number as protobuf writes it.

@@ -1,21 +1,26 @@
 #include <algorithm>
+#include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <iterator>
 #include <memory>
 #include <optional>
 #include <span>
 #include <string>
 #include <string_view>
+#include <thread>
 #include <utility>
 #include <vector>
 
 #include "coordinator/job_store/contributor_rows.h"
 #include "coordinator/job_store/database.h"
+#include "coordinator/job_store/frame_rows.h"
 #include "coordinator/job_store/incarnation_file.h"
 #include "coordinator/job_store/job_store.h"
 #include "coordinator/job_store/log_rows.h"
 #include "coordinator/job_store/output_rows.h"
+#include "coordinator/job_store/removals.h"
 #include "coordinator/job_store/reserve_file.h"
 #include "coordinator/job_store/token_rows.h"
 #include "core/base/mutex.h"
@@ -28,6 +33,9 @@ constexpr std::string_view kJobColumns =
     "submitted_ms, ended_ms, reason, core_ns, preview, owner_proven, options, "
     "samples_done, begun_ms, busy_ns";
 constexpr int kSpecColumn = 20;  ///< where it is asked for: behind all others
+
+/// That are read, or forgotten, before others have their turn.
+constexpr uint32_t kRowsAtOnce = 1000;
 
 constexpr int64_t kMsPerHour = 3'600'000;
 
@@ -136,8 +144,13 @@ class SqliteJobStore final : public JobStore {
     return with_reserve([&] {
       const core::MutexLock lock(mutex_);
       lines_.forget_counts();
-      return query("DELETE FROM jobs WHERE id = ?").bind(number(id)).run();
+      return mark_removed(db_.get(), id);
     });
+  }
+
+  core::Result<bool> drop_removed(uint32_t rows) override {
+    const core::MutexLock lock(mutex_);
+    return drop_removed_rows(db_.get(), rows);
   }
 
   core::Result<std::vector<uint64_t>> open_jobs() override {
@@ -210,19 +223,7 @@ class SqliteJobStore final : public JobStore {
   core::Status frame_over(uint64_t job, const StoredFrame& frame,
                           const std::vector<StoredOutput>& outputs) override {
     core::Status stored = at_once([&]() HYADES_REQUIRES(mutex_) {
-      core::Status done = delete_frame(job, frame.frame);
-      if (!done) return done;
-      done = query(
-                 "INSERT INTO frames (job, frame, done, reason, class, restarts) "
-                 "VALUES (?, ?, ?, ?, ?, ?)")
-                 .bind(number(job))
-                 .bind(int64_t{frame.frame})
-                 .bind(int64_t{frame.done})
-                 .bind(frame.reason)
-                 .bind(frame.worker_class)
-                 .bind(int64_t{frame.restarts})
-                 .run();
-      if (done) done = store_contributors(db_.get(), job, frame);
+      core::Status done = put_frame(db_.get(), job, frame);
       return done ? put_outputs(db_.get(), job, outputs) : done;
     });
     if (stored) reserve_.keep();
@@ -240,54 +241,40 @@ class SqliteJobStore final : public JobStore {
   core::Status forget_frames(uint64_t job, std::span<const int32_t> frames) override {
     return at_once([&]() HYADES_REQUIRES(mutex_) {
       core::Status done;
-      for (size_t i = 0; done && i < frames.size(); ++i) done = delete_frame(job, frames[i]);
+      for (size_t i = 0; done && i < frames.size(); ++i)
+        done = delete_frame(db_.get(), job, frames[i]);
       return done;
     });
   }
 
   core::Status forget_failed_frames(uint64_t job) override {
-    return at_once([&]() HYADES_REQUIRES(mutex_) {
-      core::Status done;
-      for (const char* table : {"parts", "outputs"}) {
-        if (!done) return done;
-        done = query(fmt::format("DELETE FROM {} WHERE job = ?1 AND frame IN (SELECT frame FROM "
-                                 "frames WHERE job = ?1 AND done = 0)",
-                                 table)
-                         .c_str())
-                   .bind(number(job))
-                   .run();
-      }
+    std::optional<int32_t> after;
+    for (bool more = true; more; let_others()) {
+      const core::Status done = at_once([&]() HYADES_REQUIRES(mutex_) -> core::Status {
+        const auto gone = delete_failed_frames(db_.get(), job, after, kRowsAtOnce);
+        more = gone && *gone;
+        return gone ? core::Status() : gone.error();
+      });
       if (!done) return done;
-      return query("DELETE FROM frames WHERE job = ? AND done = 0").bind(number(job)).run();
-    });
+    }
+    return {};
   }
 
   using JobStore::frames;
   core::Result<std::vector<StoredFrame>> frames(uint64_t job, std::optional<int32_t> after,
                                                 uint32_t limit) override {
-    const core::MutexLock lock(mutex_);
-    Query rows(db_.get(),
-               "SELECT frame, done, reason, class, restarts, doubtful FROM frames "
-               "WHERE job = ? AND frame > ? ORDER BY frame LIMIT ?");
-    rows.bind(number(job)).bind(after ? int64_t{*after} : INT64_MIN).bind(int64_t{limit});
-    std::vector<StoredFrame> frames;
-    while (rows.next()) {
-      StoredFrame& frame = frames.emplace_back();
-      frame.frame = static_cast<int32_t>(rows.integer(0));
-      frame.done = rows.integer(1) != 0;
-      frame.reason = rows.bytes(2);
-      frame.worker_class = rows.bytes(3);
-      frame.restarts = static_cast<uint32_t>(rows.integer(4));
-      frame.doubtful = rows.integer(5) != 0;
-    }
-    if (core::Status status = rows.status(); !status) return status.error();
-    return frames;
+    return in_pages<StoredFrame>(
+        limit, [&](const StoredFrame* last, uint32_t most) HYADES_REQUIRES(mutex_) {
+          return read_frames(db_.get(), job, last ? std::optional(last->frame) : after, most);
+        });
   }
 
   core::Result<std::vector<StoredOutput>> outputs(uint64_t job, uint64_t after,
                                                   uint32_t limit) override {
-    const core::MutexLock lock(mutex_);
-    return read_outputs(db_.get(), job, after, limit);
+    return in_pages<StoredOutput>(
+        limit, [&](const StoredOutput* last, uint32_t most) HYADES_REQUIRES(mutex_) {
+          return read_outputs(db_.get(), job, last ? last->number : after, most);
+        });
   }
 
   core::Result<std::vector<StoredOutput>> outputs_of(uint64_t job, int32_t frame) override {
@@ -351,13 +338,7 @@ class SqliteJobStore final : public JobStore {
 
   core::Result<std::vector<int32_t>> doubtful(uint64_t job, uint32_t limit) override {
     const core::MutexLock lock(mutex_);
-    Query rows =
-        query("SELECT frame FROM frames WHERE job = ? AND doubtful ORDER BY frame LIMIT ?");
-    rows.bind(number(job)).bind(int64_t{limit});
-    std::vector<int32_t> frames;
-    while (rows.next()) frames.push_back(static_cast<int32_t>(rows.integer(0)));
-    if (core::Status status = rows.status(); !status) return status.error();
-    return frames;
+    return read_doubtful(db_.get(), job, limit);
   }
 
   core::Status add_lines(uint64_t job, const std::vector<StoredLine>& lines) override {
@@ -430,6 +411,27 @@ class SqliteJobStore final : public JobStore {
     return done;
   }
 
+  /// Between two pieces of what is long: who waits for the lock is slower than whoever has just let
+  /// it go.
+  static void let_others() { std::this_thread::sleep_for(std::chrono::milliseconds(1)); }
+
+  /// At most `limit` rows, in pages that `read(last, most)` reads: those after the `last` one
+  /// (null: the first ones), at most `most`.
+  template <class Row, class Read>
+  core::Result<std::vector<Row>> in_pages(uint32_t limit, const Read& read) {
+    std::vector<Row> all;
+    for (;; let_others()) {
+      const auto left = static_cast<uint32_t>(limit - all.size());
+      const uint32_t most = std::min(left, kRowsAtOnce);
+      core::MutexLock lock(mutex_);
+      core::Result<std::vector<Row>> page = read(all.empty() ? nullptr : &all.back(), most);
+      lock.unlock();
+      if (!page) return page;
+      std::move(page->begin(), page->end(), std::back_inserter(all));
+      if (page->size() < most || most == left) return all;
+    }
+  }
+
   /// Short-lived: SQLite prepares such statements in some ten microseconds.
   Query query(std::string_view sql) HYADES_REQUIRES(mutex_) { return {db_.get(), sql}; }
 
@@ -452,17 +454,6 @@ class SqliteJobStore final : public JobStore {
     } else {
       query.bind_null();
     }
-  }
-
-  core::Status delete_frame(uint64_t job, int32_t frame) HYADES_REQUIRES(mutex_) {
-    for (const char* sql : {"DELETE FROM frames WHERE job = ? AND frame = ?",
-                            "DELETE FROM parts WHERE job = ? AND frame = ?",
-                            "DELETE FROM outputs WHERE job = ? AND frame = ?"}) {
-      if (core::Status done = query(sql).bind(number(job)).bind(int64_t{frame}).run(); !done) {
-        return done;
-      }
-    }
-    return {};
   }
 
   core::Mutex mutex_;

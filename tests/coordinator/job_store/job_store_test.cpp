@@ -343,7 +343,8 @@ TEST(JobStore, FilesOfTheFirstSchemasAreBroughtUpToDate) {
   sqlite3* db = nullptr;
   ASSERT_EQ(sqlite3_open(path.c_str(), &db), SQLITE_OK);
   ASSERT_EQ(sqlite3_exec(db,
-                         "DROP INDEX doubtful_frames; ALTER TABLE frames DROP COLUMN doubtful; "
+                         "DROP TABLE removals; DROP INDEX doubtful_frames; ALTER TABLE frames DROP "
+                         "COLUMN doubtful; "
                          "DROP TABLE parts; DROP TABLE trusted; DROP INDEX outputs_of_frame; "
                          "DROP TABLE tokens; DROP TRIGGER count_core_time; DROP TABLE core_time; "
                          "ALTER TABLE jobs DROP COLUMN core_ns; ALTER TABLE jobs DROP COLUMN "
@@ -384,6 +385,7 @@ TEST(JobStore, OwnersOfTheSixthSchemaAreProvenByTokensThatWereThereBefore) {
   sqlite3* db = nullptr;
   ASSERT_EQ(sqlite3_open(path.c_str(), &db), SQLITE_OK);
   ASSERT_EQ(sqlite3_exec(db,
+                         "DROP TABLE removals; DROP INDEX parts_by_moment; "
                          "DROP TRIGGER count_core_time; DROP TABLE core_time; "
                          "ALTER TABLE jobs DROP COLUMN owner_proven; "
                          "ALTER TABLE jobs DROP COLUMN options; DROP TABLE secret; "

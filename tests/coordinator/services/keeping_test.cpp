@@ -5,7 +5,12 @@
 
 #include <filesystem>
 #include <fstream>
+#include <string>
+#include <vector>
 
+#include <fmt/format.h>
+
+#include "coordinator/controller/remove_folder.h"
 #include "core/base/descriptor.h"
 #include "core/film/film_codec.h"
 #include "core/film/film_exr.h"
@@ -121,8 +126,10 @@ TEST(Keeping, WhatADeletedJobHadGoesButNotWhatOthersNeed) {
   finish_and_delete(world, first);
   const auto deleted = std::chrono::steady_clock::now();
   finish_and_delete(world, third);
-  EXPECT_FALSE(std::filesystem::exists(folder_of(world, "outputs", first)));
-  EXPECT_FALSE(std::filesystem::exists(folder_of(world, "films", first)));
+  EXPECT_TRUE(eventually([&] {
+    return !std::filesystem::exists(folder_of(world, "outputs", first)) &&
+           !std::filesystem::exists(folder_of(world, "films", first));
+  }));
   ASSERT_TRUE(eventually([&] { return !std::filesystem::exists(asset_of(world, own)); }));
   EXPECT_GE(std::chrono::steady_clock::now() - deleted, 550ms) << "it stays for a while";
   std::this_thread::sleep_for(400ms);
@@ -188,6 +195,72 @@ TEST(Keeping, WhatACrashLeftGoesThoughTheStoreDidNotAnswerAtFirst) {
   EXPECT_TRUE(std::filesystem::exists(folder_of(world, "films", 999))) << "it may be a job's";
   trouble->of_states(Trouble::Kind::none);
   EXPECT_TRUE(eventually([&] { return !std::filesystem::exists(folder_of(world, "films", 999)); }));
+}
+
+TEST(Keeping, AJobOfManyRowsIsDeletedBesideOthers) {
+  FarmWorld world;
+  const auto trouble = std::make_shared<Trouble>();
+  world.wrap_store = [&](std::unique_ptr<JobStore> store) {
+    return std::make_unique<TroubledStore>(std::move(store), trouble);
+  };
+  world.start();
+  const uint64_t job = world.submit(1);
+  const uint64_t other = world.submit(1);
+  v1::JobResponse now;
+  ASSERT_TRUE(world.jobs->Cancel(world.context().get(), about(job), &now).ok());
+  std::vector<StoredOutput> outputs;
+  for (int i = 0; i < 3000; ++i) outputs.push_back({std::to_string(i), 1, 9, "sha"});
+  ASSERT_TRUE(world.controller->store().change_outputs(job, {}, outputs).ok());
+  // As if it took for ever.
+  trouble->of_drops(Trouble::Kind::waits);
+  finish_and_delete(world, job);
+  EXPECT_EQ(world.jobs->Pause(world.context().get(), about(job), &now).error_code(),
+            grpc::StatusCode::NOT_FOUND);
+  finish_and_delete(world, other);
+  world.submit(2);
+  EXPECT_TRUE(
+      eventually([&] { return !std::filesystem::exists(folder_of(world, "outputs", job)); }));
+  // Where it has not come to its end the next start goes on with it.
+  trouble->of_drops(Trouble::Kind::fails);
+  ASSERT_TRUE(eventually([&] { return trouble->failed() > 0; }));
+  world.stop();
+  world.wrap_store = nullptr;
+  world.start();
+  EXPECT_TRUE(eventually([&] {
+    const auto more = world.controller->store().drop_removed(0);
+    return more && !*more;
+  }));
+}
+
+TEST(Keeping, FoldersGoInPiecesAndTheirLinksAlone) {
+  const test::TempFolder folder;
+  const std::string job = folder.file("job");
+  const std::string beside = folder.file("beside");
+  for (const std::string& path : {job, beside}) {
+    std::filesystem::create_directories(path + "/deep/er");
+    for (int i = 0; i < 6; ++i) {
+      std::ofstream(fmt::format("{}/{}", path, i)) << "x";
+      std::ofstream(fmt::format("{}/deep/er/{}", path, i)) << "x";
+    }
+  }
+  std::filesystem::create_directory_symlink(beside, job + "/link");
+  std::filesystem::create_directory_symlink(beside, folder.file("other"));
+  const auto files = [&] {
+    int count = 0;
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(job)) {
+      count += entry.is_directory() && !entry.is_symlink() ? 0 : 1;
+    }
+    return count;
+  };
+  EXPECT_FALSE(remove_some(job, 5));
+  EXPECT_EQ(files(), 8);
+  EXPECT_FALSE(remove_some(job, 5));
+  EXPECT_EQ(files(), 3);
+  EXPECT_TRUE(remove_some(job, 5));
+  EXPECT_FALSE(std::filesystem::exists(job));
+  EXPECT_TRUE(remove_some(job, 5)) << "it is gone";
+  EXPECT_TRUE(remove_some(folder.file("other"), 5));
+  EXPECT_TRUE(std::filesystem::exists(beside + "/deep/er/5"));
 }
 
 TEST(Keeping, AFilmIsFoundByTheOutputsOfItsFrameAlone) {

@@ -79,6 +79,7 @@ TEST(Needs, OfOlderJobStoresAreTakenOver) {
   sqlite3* db = nullptr;
   ASSERT_EQ(sqlite3_open((world.options.folder + "/state.db").c_str(), &db), SQLITE_OK);
   EXPECT_EQ(sqlite3_exec(db,
+                         "DROP TABLE removals; DROP INDEX parts_by_moment;"
                          "ALTER TABLE jobs DROP COLUMN options; DROP TABLE secret;"
                          "ALTER TABLE tokens DROP COLUMN pool;"
                          "ALTER TABLE tokens DROP COLUMN machines;"

@@ -30,6 +30,8 @@ class Trouble {
     return waiting_;
   }
 
+  /// What becomes of dropping rows of removed jobs, alone.
+  void of_drops(Kind kind) { set(drops_, kind); }
   /// How many calls were waiting at once at most.
   int most_waiting() const {
     const std::lock_guard lock(mutex_);
@@ -47,6 +49,7 @@ class Trouble {
   core::Status read_frames() { return pass(frames_); }
   core::Status read_outputs() { return pass(outputs_); }
   core::Status read_state() { return pass(states_); }
+  core::Status drop() { return pass(drops_); }
 
  private:
   void set(Kind& which, Kind kind) {
@@ -71,6 +74,7 @@ class Trouble {
   Kind frames_ = Kind::none;
   Kind outputs_ = Kind::none;
   Kind states_ = Kind::none;
+  Kind drops_ = Kind::none;
   int waiting_ = 0;
   int most_waiting_ = 0;
   int failed_ = 0;
@@ -94,6 +98,10 @@ class TroubledStore final : public JobStore {
   }
   core::Status remove_job(uint64_t id) override {
     return written([&] { return store_->remove_job(id); });
+  }
+  core::Result<bool> drop_removed(uint32_t rows) override {
+    if (core::Status passed = trouble_->drop(); !passed) return passed.error();
+    return written([&] { return store_->drop_removed(rows); });
   }
   core::Result<std::vector<uint64_t>> open_jobs() override { return store_->open_jobs(); }
   core::Result<std::optional<StoredJob>> job(uint64_t id) override {

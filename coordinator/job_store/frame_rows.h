@@ -1,0 +1,31 @@
+#pragma once
+
+#include <sqlite3.h>
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "coordinator/job_store/job_store.h"
+
+namespace hyades::coordinator {
+
+// Frames that are over, as rows.
+
+/// JobStore::frames().
+core::Result<std::vector<StoredFrame>> read_frames(sqlite3* db, uint64_t job,
+                                                   std::optional<int32_t> after, uint32_t limit);
+/// JobStore::doubtful().
+core::Result<std::vector<int32_t>> read_doubtful(sqlite3* db, uint64_t job, uint32_t limit);
+
+/// Replaces what is known of the frame, but for its outputs, of which it has none then; within a
+/// transaction.
+core::Status put_frame(sqlite3* db, uint64_t job, const StoredFrame& frame);
+/// Forgets the frame and its outputs; within a transaction.
+core::Status delete_frame(sqlite3* db, uint64_t job, int32_t frame);
+/// Looks at the first `limit` frames above `after`, which becomes the last one's number, and
+/// forgets those that have failed; within a transaction. Whether there may be more.
+core::Result<bool> delete_failed_frames(sqlite3* db, uint64_t job, std::optional<int32_t>& after,
+                                        uint32_t limit);
+
+}  // namespace hyades::coordinator

@@ -1,0 +1,23 @@
+#pragma once
+
+#include <sqlite3.h>
+
+#include <cstdint>
+#include <string>
+
+#include "core/base/result.h"
+
+namespace hyades::coordinator {
+
+// Jobs that are removed: their rows in `jobs` go at once, as the promise of their removal, and what
+// refers to them, which may be millions of rows, in pieces between which others have their turn.
+
+/// Of a query whose first parameter is a job: it finds nothing of one that is removed.
+inline const std::string kJobIsThere = " AND EXISTS (SELECT 1 FROM jobs WHERE id = ?1) ";
+
+/// JobStore::remove_job().
+core::Status mark_removed(sqlite3* db, uint64_t job);
+/// JobStore::drop_removed().
+core::Result<bool> drop_removed_rows(sqlite3* db, uint32_t rows);
+
+}  // namespace hyades::coordinator

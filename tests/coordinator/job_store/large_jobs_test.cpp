@@ -1,0 +1,217 @@
+// Jobs of a great many frames and outputs hold nobody up.
+#include <gtest/gtest.h>
+#include <sqlite3.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "coordinator/job_store/contributor_rows.h"
+#include "coordinator/job_store/database.h"
+#include "coordinator/job_store/frame_rows.h"
+#include "coordinator/job_store/job_store.h"
+#include "coordinator/job_store/output_rows.h"
+#include "coordinator/job_store/removals.h"
+#include "tests/support/temp_folder.h"
+
+namespace hyades::coordinator {
+namespace {
+
+StoredJob job_of(const std::string& owner, const std::string& key = {}) {
+  StoredJob job;
+  job.owner = owner;
+  job.key = key;
+  return job;
+}
+
+std::vector<StoredOutput> many_outputs(int32_t count) {
+  std::vector<StoredOutput> outputs;
+  for (int32_t i = 0; i < count; ++i) {
+    outputs.push_back({fmt::format("film.mp4.frames/{:06}.png", i), i, 9, "sha"});
+  }
+  return outputs;
+}
+
+class LargeJobs : public testing::Test {
+ protected:
+  void SetUp() override { open_store(); }
+  void open_store() {
+    auto opened = open_sqlite_job_store(path_);
+    ASSERT_TRUE(opened.ok()) << (opened ? "" : opened.error().message);
+    store_ = std::move(*opened);
+  }
+  void open_raw() {
+    store_.reset();
+    auto opened = open_database(path_);
+    ASSERT_TRUE(opened.ok());
+    db_ = std::move(*opened);
+  }
+  int64_t count(const std::string& table) const {
+    Query rows(db_.get(), "SELECT COUNT(*) FROM " + table);
+    return rows.next() ? rows.integer(0) : -1;
+  }
+  /// Steps of SQLite's machine that `what` takes, in hundreds.
+  int steps_of(const std::function<void()>& what) const {
+    int hundreds = 0;
+    const auto note = [](void* count) { return ++*static_cast<int*>(count) < 0 ? 1 : 0; };
+    sqlite3_progress_handler(db_.get(), 100, note, &hundreds);
+    what();
+    sqlite3_progress_handler(db_.get(), 0, nullptr, nullptr);
+    return hundreds;
+  }
+  /// Questions of others that are answered while `what` goes on.
+  int answered_while(const std::function<void()>& what) {
+    std::atomic<int> answered{0};
+    std::atomic<bool> over{false};
+    std::thread others([&] {
+      while (!over) {
+        EXPECT_TRUE(store_->state(1).ok());
+        ++answered;
+      }
+    });
+    while (answered == 0) std::this_thread::yield();
+    const int before = answered;
+    what();
+    const int during = answered - before;
+    over = true;
+    others.join();
+    return during;
+  }
+
+  const test::TempFolder folder_;
+  const std::string path_ = folder_.file("state.db");
+  std::unique_ptr<JobStore> store_;
+  Database db_;
+};
+
+TEST_F(LargeJobs, GoInPieces) {
+  for (const char* owner : {"ada", "eve"}) ASSERT_TRUE(store_->add_job(job_of(owner)).ok());
+  for (const uint64_t job : {1, 2}) {
+    ASSERT_TRUE(store_->change_outputs(job, {}, many_outputs(2500)).ok());
+    for (int32_t frame = 0; frame < 20; ++frame) {
+      const StoredFrame over{frame, true, "", "class", 0, {"worker"}, 1};
+      ASSERT_TRUE(store_->frame_over(job, over, {}).ok());
+    }
+    ASSERT_TRUE(store_->add_lines(job, std::vector<StoredLine>(30)).ok());
+  }
+  open_raw();
+  int before = sqlite3_total_changes(db_.get());
+  ASSERT_TRUE(mark_removed(db_.get(), 1).ok());
+  EXPECT_LT(sqlite3_total_changes(db_.get()) - before, 5) << "in the one step that is waited for";
+  int pieces = 0;
+  for (bool more = true; more; ++pieces) {
+    before = sqlite3_total_changes(db_.get());
+    const auto dropped = drop_removed_rows(db_.get(), 500);
+    ASSERT_TRUE(dropped.ok());
+    EXPECT_LE(sqlite3_total_changes(db_.get()) - before, 501);
+    more = *dropped;
+  }
+  EXPECT_GE(pieces, 5);
+  EXPECT_EQ(count("outputs"), 2480) << "another job's";
+  EXPECT_EQ(count("frames"), 20);
+  EXPECT_EQ(count("parts"), 20);
+  EXPECT_EQ(count("lines"), 30);
+  EXPECT_EQ(count("removals"), 0);
+}
+
+TEST_F(LargeJobs, AreGoneAtOnceForAllWhoAsk) {
+  const std::string key(16, 'k');
+  ASSERT_TRUE(store_->add_job(job_of("ada", key)).ok());
+  const StoredFrame over{0, true, "", "class", 0, {"worker"}, 1};
+  ASSERT_TRUE(store_->frame_over(1, over, many_outputs(10)).ok());
+  ASSERT_TRUE(store_->add_lines(1, std::vector<StoredLine>(10)).ok());
+  ASSERT_TRUE(store_->remove_job(1).ok());
+  const auto is_gone = [&] {
+    EXPECT_FALSE(store_->job(1)->has_value());
+    EXPECT_FALSE(store_->state(1)->has_value());
+    EXPECT_FALSE(store_->job_of_key(key)->has_value());
+    EXPECT_TRUE(store_->open_jobs()->empty());
+    EXPECT_TRUE(store_->frames(1)->empty());
+    EXPECT_TRUE(store_->outputs(1, 0, 100)->empty());
+    EXPECT_TRUE(store_->outputs_of(1, 0)->empty());
+    EXPECT_FALSE(store_->output(1, "film.mp4.frames/000000.png")->has_value());
+    EXPECT_TRUE(store_->lines(1, 0, 100)->empty());
+    EXPECT_TRUE(store_->mark_divergent({"worker", "why"}, 0, {})->empty());
+    EXPECT_TRUE(store_->doubtful(1, 10)->empty());
+    EXPECT_FALSE(store_->add_lines(1, std::vector<StoredLine>(1)).ok());
+    EXPECT_FALSE(store_->change_outputs(1, {}, many_outputs(1)).ok());
+  };
+  is_gone();
+  store_.reset();  // killed before anything of it was dropped
+  open_store();
+  is_gone();
+  while (*store_->drop_removed(3)) is_gone();
+  EXPECT_EQ(store_->add_job(job_of("ada", key))->id, 2U);
+  open_raw();
+  for (const char* table : {"outputs", "frames", "parts", "lines", "removals"}) {
+    EXPECT_EQ(count(table), 0) << table;
+  }
+}
+
+TEST_F(LargeJobs, AreReadInTurnsWithOthers) {
+  constexpr int32_t kMany = 30'000;
+  ASSERT_TRUE(store_->add_job(job_of("ada")).ok());
+  ASSERT_TRUE(store_->change_outputs(1, {}, many_outputs(kMany)).ok());
+  size_t read = 0;
+  EXPECT_GE(answered_while([&] { read = store_->outputs(1, 0, UINT32_MAX)->size(); }), 10);
+  EXPECT_EQ(read, static_cast<size_t>(kMany));
+  EXPECT_EQ(store_->outputs(1, 7, 2500)->size(), 2500U);
+  EXPECT_EQ(store_->outputs(1, 0, 2000)->back().number, 2000U);
+}
+
+TEST_F(LargeJobs, BeginAgainInTurnsWithOthers) {
+  ASSERT_TRUE(store_->add_job(job_of("ada")).ok());
+  open_raw();
+  {
+    Transaction all(db_.get());
+    for (int32_t frame = 0; frame < 20'000; ++frame) {
+      const bool done = frame % 3 == 0;
+      ASSERT_TRUE(put_frame(db_.get(), 1, {frame, done, "why", "class", 0, {"worker"}, 1}).ok());
+    }
+    ASSERT_TRUE(all.commit().ok());
+  }
+  db_.reset();
+  open_store();
+  EXPECT_GE(answered_while([&] { ASSERT_TRUE(store_->forget_failed_frames(1).ok()); }), 10);
+  const auto left = store_->frames(1);
+  EXPECT_EQ(left->size(), 6667U);
+  EXPECT_TRUE(std::all_of(left->begin(), left->end(), [](const auto& f) { return f.done; }));
+}
+
+TEST_F(LargeJobs, AreNotSearchedForOneOutput) {
+  ASSERT_TRUE(store_->add_job(job_of("ada")).ok());
+  ASSERT_TRUE(store_->change_outputs(1, {}, many_outputs(20'000)).ok());
+  open_raw();
+  EXPECT_LT(steps_of([&] { EXPECT_TRUE(delete_outputs(db_.get(), 1, {"film.mp4"}).ok()); }), 5);
+  EXPECT_EQ(count("outputs"), 20'000);
+}
+
+TEST_F(LargeJobs, AreNotSearchedForWhatAWorkerDidOfLate) {
+  ASSERT_TRUE(store_->add_job(job_of("ada")).ok());
+  open_raw();
+  {
+    Transaction all(db_.get());
+    for (int32_t frame = 0; frame < 20'000; ++frame) {
+      const auto moment = static_cast<uint64_t>(frame);
+      ASSERT_TRUE(put_frame(db_.get(), 1, {frame, true, "", "", 0, {"worker"}, moment}).ok());
+    }
+    ASSERT_TRUE(all.commit().ok());
+  }
+  const auto suspects = [&] {
+    const auto found = suspect_frames_of(db_.get(), "worker", 19'997);
+    ASSERT_TRUE(found.ok());
+    ASSERT_EQ(found->size(), 1U);
+    EXPECT_EQ(found->front().frames, (std::vector<int32_t>{19'998, 19'999}));
+  };
+  EXPECT_LT(steps_of(suspects), 10);
+}
+
+}  // namespace
+}  // namespace hyades::coordinator
