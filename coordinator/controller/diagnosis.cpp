@@ -55,7 +55,7 @@ class Diagnosis::Reasons {
 
 grpc::Status Diagnosis::explain(uint64_t id, v1::ExplainResponse& response) {
   if (explain_open(id, response)) return grpc::Status::OK;
-  const auto stored = context_.store->job(id);
+  const auto stored = context_.store->summary(id);
   if (const grpc::Status there = job_is_there(id, stored); !there.ok()) return there;
   Reasons reasons(response);
   switch ((*stored)->state) {

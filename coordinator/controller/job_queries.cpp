@@ -220,7 +220,7 @@ grpc::Status JobQueries::get(uint64_t id, std::optional<int32_t> after,
                              v1::GetJobResponse& response, v1::FrameState only, size_t most_bytes) {
   if (get_open(id, after, response, only, most_bytes)) return grpc::Status::OK;
   FramePage page(*response.mutable_frames(), most_bytes);
-  auto stored = context_.store->job(id);
+  auto stored = context_.store->summary(id);
   if (const grpc::Status there = job_is_there(id, stored); !there.ok()) return there;
   {
     const StateLock lock(context_.mutex);
@@ -314,7 +314,7 @@ grpc::Status JobQueries::frame_now(uint64_t id, int32_t frame, FrameNow& now) {
       return grpc::Status::OK;
     }
   }
-  const auto stored = context_.store->job(id);
+  const auto stored = context_.store->summary(id);
   if (const grpc::Status there = job_is_there(id, stored); !there.ok()) return there;
   const auto before = frame == INT32_MIN ? std::nullopt : std::optional(frame - 1);
   const auto frames = context_.store->frames(id, before, 1);
@@ -326,7 +326,7 @@ grpc::Status JobQueries::frame_now(uint64_t id, int32_t frame, FrameNow& now) {
 
 /// The film of a frame that is done.
 grpc::Status JobQueries::kept_film(uint64_t id, int32_t frame, const FilmTaker& then) {
-  const auto stored = context_.store->job(id);
+  const auto stored = context_.store->summary(id);
   if (const grpc::Status there = job_is_there(id, stored); !there.ok()) return there;
   const auto outputs = context_.store->outputs_of(id, frame);
   if (!outputs) return farm::unavailable(outputs.error());

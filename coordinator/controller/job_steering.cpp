@@ -118,7 +118,7 @@ grpc::Status JobSteering::cancel_waiting(uint64_t id, v1::Job& now) {
   if (!waits()) return why_not_open(*context_.store, id);
   // Nobody begins to recover it meanwhile.
   const auto one = context_.wait_for_submissions();
-  auto stored = context_.store->job(id);
+  auto stored = context_.store->summary(id);
   if (!stored) return farm::unavailable(stored.error());
   if (!one || !waits() || !*stored || has_ended((*stored)->state)) {
     return farm::retry_later(grpc::StatusCode::UNAVAILABLE,

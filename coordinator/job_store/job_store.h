@@ -162,6 +162,8 @@ class JobStore {
   virtual core::Result<std::vector<uint64_t>> open_jobs() = 0;
   /// Nothing where there is no such job.
   virtual core::Result<std::optional<StoredJob>> job(uint64_t id) = 0;
+  /// As job(), without its spec, which may have megabytes.
+  virtual core::Result<std::optional<StoredJob>> summary(uint64_t id) = 0;
   /// Nothing where there is no such job.
   virtual core::Result<std::optional<StoredState>> state(uint64_t id) = 0;
   /// The specs of the first `limit` jobs with ids above `after`, the oldest first.

@@ -64,8 +64,9 @@ core::Result<bool> drop_removed_rows(sqlite3* db, uint32_t rows) {
     if (core::Status done = transaction.commit(); !done) return done.error();
     return true;
   }
-  if (core::Status done = Query(db, "DELETE FROM removals WHERE job = ?").bind(job).run(); !done) {
-    return done.error();
+  for (const char* sql :
+       {"DELETE FROM specs WHERE job = ?", "DELETE FROM removals WHERE job = ?"}) {
+    if (core::Status done = Query(db, sql).bind(job).run(); !done) return done.error();
   }
   if (core::Status done = transaction.commit(); !done) return done.error();
   return true;

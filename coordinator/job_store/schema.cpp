@@ -146,6 +146,14 @@ ALTER TABLE jobs ADD COLUMN busy_ns INTEGER NOT NULL DEFAULT 0;
 CREATE TABLE removals (job INTEGER PRIMARY KEY);  -- gone, with rows of it left: removals.h
 CREATE INDEX parts_by_moment ON parts (moment);
 )",
+    R"(
+CREATE TABLE specs (  -- megabytes, apart from what is listed and changed
+  job INTEGER PRIMARY KEY REFERENCES jobs (id) ON DELETE CASCADE,
+  spec BLOB NOT NULL);
+INSERT INTO specs SELECT id, spec FROM jobs;
+ALTER TABLE jobs DROP COLUMN spec;
+CREATE INDEX jobs_of_owner ON jobs (owner, id);
+)",
 };
 
 /// A number as protobuf writes it.

@@ -32,7 +32,6 @@ constexpr std::string_view kJobColumns =
     "id, key, name, owner, priority, state, frames, frames_done, frames_failed, samples, "
     "submitted_ms, ended_ms, reason, core_ns, preview, owner_proven, options, "
     "samples_done, begun_ms, busy_ns";
-constexpr int kSpecColumn = 20;  ///< where it is asked for: behind all others
 
 /// That are read, or forgotten, before others have their turn.
 constexpr uint32_t kRowsAtOnce = 1000;
@@ -101,22 +100,29 @@ class SqliteJobStore final : public JobStore {
     const auto known = find_key(job.key);
     if (!known) return known.error();
     if (*known) return Added{**known, true};
+    Transaction transaction(db_.get());
+    if (core::Status begun = transaction.status(); !begun) return begun.error();
     Query insert(db_.get(),
-                 "INSERT INTO jobs (key, spec, name, owner, priority, state, frames, "
+                 "INSERT INTO jobs (key, name, owner, priority, state, frames, "
                  "frames_done, frames_failed, samples, submitted_ms, ended_ms, reason, core_ns, "
                  "samples_done, begun_ms, busy_ns, preview, owner_proven, options, max_workers) "
-                 "VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, 0)");
+                 "VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, 0)");
     if (job.key.empty()) {
       insert.bind_null();
     } else {
       insert.bind(job.key);
     }
-    insert.bind_blob(job.spec).bind(job.name).bind(job.owner);
+    insert.bind(job.name).bind(job.owner);
     bind_changing(insert, job);
     insert.bind(int64_t{job.owner_proven ? 1 : 0}).bind_blob(job.options);
     if (core::Status done = insert.run(); !done) return done.error();
+    const auto id = static_cast<uint64_t>(sqlite3_last_insert_rowid(db_.get()));
+    core::Status done =
+        query("INSERT INTO specs VALUES (?, ?)").bind(number(id)).bind_blob(job.spec).run();
+    if (done) done = transaction.commit();
+    if (!done) return done.error();
     reserve_.keep();
-    return Added{static_cast<uint64_t>(sqlite3_last_insert_rowid(db_.get())), false};
+    return Added{id, false};
   }
 
   core::Result<std::optional<uint64_t>> job_of_key(const std::string& key) override {
@@ -164,15 +170,18 @@ class SqliteJobStore final : public JobStore {
 
   core::Result<std::optional<StoredJob>> job(uint64_t id) override {
     const core::MutexLock lock(mutex_);
-    Query row(db_.get(), "SELECT " + std::string(kJobColumns) + ", spec FROM jobs WHERE id = ?");
-    row.bind(number(id));
-    if (!row.next()) {
-      if (core::Status status = row.status(); !status) return status.error();
-      return std::optional<StoredJob>();
-    }
-    StoredJob job = read_job(row);
-    job.spec = row.bytes(kSpecColumn);
-    return std::optional(std::move(job));
+    auto job = find_job(id);
+    if (!job || !*job) return job;
+    Query spec = query("SELECT spec FROM specs WHERE job = ?");
+    spec.bind(number(id));
+    if (spec.next()) (*job)->spec = spec.bytes(0);
+    if (core::Status status = spec.status(); !status) return status.error();
+    return job;
+  }
+
+  core::Result<std::optional<StoredJob>> summary(uint64_t id) override {
+    const core::MutexLock lock(mutex_);
+    return find_job(id);
   }
 
   core::Result<std::optional<StoredState>> state(uint64_t id) override {
@@ -186,7 +195,9 @@ class SqliteJobStore final : public JobStore {
 
   core::Result<std::vector<StoredSpec>> specs(uint64_t after, uint32_t limit) override {
     const core::MutexLock lock(mutex_);
-    Query rows(db_.get(), "SELECT id, spec FROM jobs WHERE id > ? ORDER BY id LIMIT ?");
+    Query rows(db_.get(),
+               "SELECT job, spec FROM specs WHERE job > ? AND job IN (SELECT id FROM jobs) ORDER "
+               "BY job LIMIT ?");
     rows.bind(number(after)).bind(int64_t{limit});
     std::vector<StoredSpec> specs;
     while (rows.next()) specs.push_back({static_cast<uint64_t>(rows.integer(0)), rows.bytes(1)});
@@ -383,6 +394,14 @@ class SqliteJobStore final : public JobStore {
     if (known.next()) return std::optional(static_cast<uint64_t>(known.integer(0)));
     if (core::Status status = known.status(); !status) return status.error();
     return std::optional<uint64_t>();
+  }
+
+  core::Result<std::optional<StoredJob>> find_job(uint64_t id) HYADES_REQUIRES(mutex_) {
+    Query row = query("SELECT " + std::string(kJobColumns) + " FROM jobs WHERE id = ?");
+    row.bind(number(id));
+    if (row.next()) return std::optional(read_job(row));
+    if (core::Status status = row.status(); !status) return status.error();
+    return std::optional<StoredJob>();
   }
 
   core::Status put_quarantine(const StoredQuarantine& worker) HYADES_REQUIRES(mutex_) {

@@ -173,7 +173,7 @@ WebReply file(Controller& controller, const v1::OutputRequest& asked, const WebR
 }
 
 WebReply send_archive(Controller& controller, uint64_t job) {
-  const auto stored = controller.store().job(job);
+  const auto stored = controller.store().summary(job);
   if (const grpc::Status there = job_is_there(job, stored); !there.ok()) {
     return error_reply(there);
   }

@@ -39,11 +39,15 @@ int main(int argc, char** argv) {
                               "SELECT name FROM main.sqlite_master WHERE type = 'table' AND "
                               "name NOT LIKE 'sqlite_%'")) {
     std::string columns;
+    std::string values;
     for (const Row& column : ask(db, "SELECT name FROM pragma_table_info('" + table[0] + "')")) {
+      const bool moved = table[0] == "jobs" && column[0] == "spec";
       columns += (columns.empty() ? "" : ", ") + column[0];
+      values += values.empty() ? "" : ", ";
+      values += moved ? "(SELECT spec FROM live.specs WHERE job = id)" : column[0];
     }
-    ask(db, "INSERT INTO main." + table[0] + " (" + columns + ") SELECT " + columns +
-                " FROM live." + table[0]);
+    ask(db, "INSERT INTO main." + table[0] + " (" + columns + ") SELECT " + values + " FROM live." +
+                table[0]);
   }
   return sqlite3_close(db) == SQLITE_OK ? 0 : 1;
 }

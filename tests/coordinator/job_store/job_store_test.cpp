@@ -343,6 +343,9 @@ TEST(JobStore, FilesOfTheFirstSchemasAreBroughtUpToDate) {
   sqlite3* db = nullptr;
   ASSERT_EQ(sqlite3_open(path.c_str(), &db), SQLITE_OK);
   ASSERT_EQ(sqlite3_exec(db,
+                         "ALTER TABLE jobs ADD COLUMN spec BLOB NOT NULL DEFAULT x''; "
+                         "UPDATE jobs SET spec = (SELECT spec FROM specs WHERE job = id); "
+                         "DROP TABLE specs; DROP INDEX jobs_of_owner; "
                          "DROP TABLE removals; DROP INDEX doubtful_frames; ALTER TABLE frames DROP "
                          "COLUMN doubtful; "
                          "DROP TABLE parts; DROP TABLE trusted; DROP INDEX outputs_of_frame; "
@@ -361,6 +364,7 @@ TEST(JobStore, FilesOfTheFirstSchemasAreBroughtUpToDate) {
   const auto frames = store->frames(1);
   ASSERT_EQ(frames->size(), 1U);
   EXPECT_FALSE(frames->at(0).doubtful);
+  EXPECT_EQ((*store->job(1))->spec, some_job("", "ada").spec);
   EXPECT_EQ((*store->job(1))->core_ns, 0U);
   EXPECT_FALSE((*store->job(1))->preview);
   EXPECT_FALSE((*store->job(1))->owner_proven) << "no token has shown who ada is";
@@ -385,6 +389,9 @@ TEST(JobStore, OwnersOfTheSixthSchemaAreProvenByTokensThatWereThereBefore) {
   sqlite3* db = nullptr;
   ASSERT_EQ(sqlite3_open(path.c_str(), &db), SQLITE_OK);
   ASSERT_EQ(sqlite3_exec(db,
+                         "ALTER TABLE jobs ADD COLUMN spec BLOB NOT NULL DEFAULT x''; "
+                         "UPDATE jobs SET spec = (SELECT spec FROM specs WHERE job = id); "
+                         "DROP TABLE specs; DROP INDEX jobs_of_owner; "
                          "DROP TABLE removals; DROP INDEX parts_by_moment; "
                          "DROP TRIGGER count_core_time; DROP TABLE core_time; "
                          "ALTER TABLE jobs DROP COLUMN owner_proven; "

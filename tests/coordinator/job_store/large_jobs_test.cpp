@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cstdint>
+#include <fstream>
 #include <functional>
 #include <memory>
 #include <string>
@@ -37,6 +38,16 @@ std::vector<StoredOutput> many_outputs(int32_t count) {
     outputs.push_back({fmt::format("film.mp4.frames/{:06}.png", i), i, 9, "sha"});
   }
   return outputs;
+}
+
+/// That this process has read of files so far.
+uint64_t bytes_read() {
+  std::ifstream io("/proc/self/io");
+  std::string name;
+  uint64_t bytes = 0;
+  io >> name >> bytes;
+  EXPECT_EQ(name, "rchar:");
+  return bytes;
 }
 
 class LargeJobs : public testing::Test {
@@ -118,6 +129,7 @@ TEST_F(LargeJobs, GoInPieces) {
   EXPECT_EQ(count("frames"), 20);
   EXPECT_EQ(count("parts"), 20);
   EXPECT_EQ(count("lines"), 30);
+  EXPECT_EQ(count("specs"), 1);
   EXPECT_EQ(count("removals"), 0);
 }
 
@@ -153,6 +165,7 @@ TEST_F(LargeJobs, AreGoneAtOnceForAllWhoAsk) {
   for (const char* table : {"outputs", "frames", "parts", "lines", "removals"}) {
     EXPECT_EQ(count(table), 0) << table;
   }
+  EXPECT_EQ(count("specs"), 1) << "the new job's";
 }
 
 TEST_F(LargeJobs, AreReadInTurnsWithOthers) {
@@ -183,6 +196,43 @@ TEST_F(LargeJobs, BeginAgainInTurnsWithOthers) {
   const auto left = store_->frames(1);
   EXPECT_EQ(left->size(), 6667U);
   EXPECT_TRUE(std::all_of(left->begin(), left->end(), [](const auto& f) { return f.done; }));
+}
+
+TEST_F(LargeJobs, AreListedAndChangedWithoutTheirSpecs) {
+  constexpr uint64_t kSpec = uint64_t{1} << 20U;
+  constexpr uint64_t kJobs = 40;
+  StoredJob job = job_of("ada");
+  job.spec = std::string(kSpec, 's');
+  for (uint64_t i = 0; i < kJobs; ++i) ASSERT_TRUE(store_->add_job(job).ok());
+  store_.reset();
+  open_store();  // nothing is in its memory
+  const auto read_by = [](const std::function<void()>& what) {
+    const uint64_t before = bytes_read();
+    what();
+    return bytes_read() - before;
+  };
+  EXPECT_LT(read_by([&] { EXPECT_EQ(store_->list(true, "", 0, 100)->size(), kJobs); }), kSpec);
+  EXPECT_LT(read_by([&] { EXPECT_TRUE(store_->list(true, "eve", 0, 100)->empty()); }), kSpec);
+  EXPECT_LT(read_by([&] {
+              auto one = **store_->summary(7);
+              EXPECT_TRUE(one.spec.empty());
+              one.state = StoredState::done;
+              EXPECT_TRUE(store_->update_job(one).ok());
+            }),
+            kSpec);
+  EXPECT_EQ((*store_->job(7))->spec, job.spec);
+}
+
+TEST_F(LargeJobs, OfOthersAreNotLookedThroughForAnOwners) {
+  for (int i = 0; i < 500; ++i) ASSERT_TRUE(store_->add_job(job_of(i == 250 ? "eve" : "ada")).ok());
+  open_raw();
+  const auto plan = [&](const std::string& what) {
+    Query rows(db_.get(), "EXPLAIN QUERY PLAN SELECT * FROM jobs WHERE id < 1000 AND " + what +
+                              " ORDER BY id DESC LIMIT 10");
+    return rows.next() ? rows.bytes(3) : "";
+  };
+  EXPECT_NE(plan("owner = 'eve'").find("jobs_of_owner"), std::string::npos);
+  EXPECT_EQ(plan("state < 3").find("jobs_of_owner"), std::string::npos);
 }
 
 TEST_F(LargeJobs, AreNotSearchedForOneOutput) {

@@ -79,6 +79,9 @@ TEST(Needs, OfOlderJobStoresAreTakenOver) {
   sqlite3* db = nullptr;
   ASSERT_EQ(sqlite3_open((world.options.folder + "/state.db").c_str(), &db), SQLITE_OK);
   EXPECT_EQ(sqlite3_exec(db,
+                         "ALTER TABLE jobs ADD COLUMN spec BLOB NOT NULL DEFAULT x'';"
+                         "UPDATE jobs SET spec = (SELECT spec FROM specs WHERE job = id);"
+                         "DROP TABLE specs; DROP INDEX jobs_of_owner;"
                          "DROP TABLE removals; DROP INDEX parts_by_moment;"
                          "ALTER TABLE jobs DROP COLUMN options; DROP TABLE secret;"
                          "ALTER TABLE tokens DROP COLUMN pool;"

@@ -107,6 +107,9 @@ class TroubledStore final : public JobStore {
   core::Result<std::optional<StoredJob>> job(uint64_t id) override {
     return read([&] { return store_->job(id); });
   }
+  core::Result<std::optional<StoredJob>> summary(uint64_t id) override {
+    return read([&] { return store_->summary(id); });
+  }
   core::Result<std::optional<StoredState>> state(uint64_t id) override {
     if (core::Status passed = trouble_->read_state(); !passed) return passed.error();
     return read([&] { return store_->state(id); });
