@@ -271,7 +271,7 @@ v1::Frame ActiveJob::describe_frame(int32_t number, const FrameNote& note) const
   wire.set_samples(expected_samples(note.samples_done, note.samples_spared,
                                     samples_per_frame - note.samples_spared - note.samples_done));
   wire.set_samples_done(note.samples_done);
-  wire.set_reason(farm::wire_text(note.reason));
+  if (note.reason) wire.set_reason(farm::wire_text(*note.reason));
   wire.set_worker_class(note.worker_class);
   wire.set_restarts(note.restarts);
   if (note.noise) wire.set_noise(*note.noise);

@@ -12,6 +12,7 @@
 
 #include <grpcpp/support/byte_buffer.h>
 
+#include "coordinator/controller/failure_reasons.h"
 #include "coordinator/controller/log_buffer.h"
 #include "coordinator/controller/speed.h"
 #include "coordinator/controller/state_lock.h"
@@ -35,12 +36,12 @@ inline constexpr size_t kLongestName = 200;
 /// What those who ask are told of a frame of an open job.
 struct FrameNote {
   v1::FrameState state = v1::FRAME_STATE_WAITING;
-  uint64_t samples_done = 0;    ///< durable
-  uint64_t samples_spared = 0;  ///< that its tiles were found not to need
-  std::string reason;           ///< why it failed
-  std::string worker_class;     ///< of those who render it; empty: nobody has begun
-  uint32_t restarts = 0;        ///< how often it has begun again
-  std::optional<double> noise;  ///< of its film when that was last measured, see picture_noise()
+  uint64_t samples_done = 0;      ///< durable
+  uint64_t samples_spared = 0;    ///< that its tiles were found not to need
+  FailureReasons::Reason reason;  ///< why it failed; null where it has not
+  std::string worker_class;       ///< of those who render it; empty: nobody has begun
+  uint32_t restarts = 0;          ///< how often it has begun again
+  std::optional<double> noise;    ///< of its film when that was last measured, see picture_noise()
   int64_t begun_ms = 0;    ///< when its first unit was leased; 0: before the last start, or never
   uint64_t render_ns = 0;  ///< that threads took for the results which counted, since the start
   uint64_t begun = 0;  ///< StoredFrame::moment of the last frame that was finished then; 0: unknown
@@ -108,6 +109,7 @@ struct ActiveJob {
   /// Frames that may be in work: all that are rendered or finished, and a few others.
   std::set<int32_t> in_work HYADES_GUARDED_BY(state_lock);
   std::set<int32_t> failed HYADES_GUARDED_BY(state_lock);  ///< frames that have failed
+  FailureReasons reasons HYADES_GUARDED_BY(state_lock);    ///< why these have
   Speed speed HYADES_GUARDED_BY(state_lock);
   /// Since when it has been worked on without a pause that is not in stored.busy_ns; none: nobody
   /// works on it.

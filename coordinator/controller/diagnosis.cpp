@@ -177,7 +177,7 @@ bool Diagnosis::explain_frames(const ActiveJob& active, const std::set<std::stri
   }
   reasons.end_kind("frames are rendered; their outputs are being made");
   for (const int32_t number : active.failed) {
-    reasons.say_one("frame {} failed: {}", number, active.frames.at(number).reason);
+    reasons.say_one("frame {} failed: {}", number, *active.frames.at(number).reason);
   }
   reasons.end_kind("frames failed");
   bool orphans = false;

@@ -228,7 +228,7 @@ void FrameProgress::failed(ActiveJob& active, const FrameFailed& action) {
   noted.state = v1::FRAME_STATE_FAILED;
   active.in_work.erase(frame);
   active.failed.insert(frame);
-  noted.reason = farm::wire_text(action.reason);
+  noted.reason = active.reasons.share(farm::wire_text(action.reason));
   active.samples_done -= std::exchange(noted.samples_done, 0);
   active.samples_spared -= std::exchange(noted.samples_spared, 0);
   ++active.stored.frames_failed;
@@ -244,7 +244,7 @@ void FrameProgress::restarted(ActiveJob& active, const FrameRestarted& action) {
   noted.state = v1::FRAME_STATE_WAITING;
   active.in_work.erase(frame);
   active.failed.erase(frame);
-  noted.reason.clear();
+  noted.reason.reset();
   noted.worker_class.clear();
   noted.noise.reset();
   ++noted.restarts;

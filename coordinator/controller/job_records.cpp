@@ -179,10 +179,9 @@ void JobRecords::end(ActiveJob& active, bool cancelled, const std::string& why) 
   stored.ended_ms = core::wall_ms();
   stored.samples_done = active.samples_done;
   stored.reason = farm::wire_text(why);
-  for (const auto& [number, frame] : active.frames) {
-    if (frame.state == v1::FRAME_STATE_FAILED && stored.reason.empty()) {
-      stored.reason = fmt::format("frame {} failed: {}", number, frame.reason);
-    }
+  if (stored.reason.empty() && !active.failed.empty()) {
+    const int32_t first = *active.failed.begin();
+    stored.reason = fmt::format("frame {} failed: {}", first, *active.frames.at(first).reason);
   }
   jobs_.note(active, v1::LOG_LEVEL_INFO, std::nullopt, {},
              fmt::format("ended: {} done, {} failed{}", core::counted(stored.frames_done, "frame"),

@@ -24,6 +24,8 @@ namespace {
 /// Films of a progressive job that may be in memory together, and frames that may be.
 constexpr uint64_t kProgressiveBytes = uint64_t{2} << 30U;
 constexpr uint64_t kMostAtOnce = 256;
+/// Rows of frames that are read at a time.
+constexpr uint32_t kFramesAtOnce = 1000;
 /// For the documents of others to be read: a few of the longest. Who reopens a job asks once.
 constexpr std::chrono::seconds kRecoveryPatience{30};
 
@@ -255,10 +257,27 @@ core::Status JobRecovery::recover(uint64_t id, JobRead read, const std::string& 
   return start(std::move(*read.job), std::move(*restored));
 }
 
+/// The frames of the job that are over. Why they failed is noted as it is read, a page at a time.
+core::Result<std::vector<StoredFrame>> JobRecovery::frames_over(ActiveJob& active) const {
+  std::vector<StoredFrame> all;
+  std::optional<int32_t> after;
+  for (;;) {
+    auto page = context_.store->frames(static_cast<uint64_t>(active.id), after, kFramesAtOnce);
+    if (!page) return page.error();
+    if (page->empty()) return all;
+    after = page->back().frame;
+    for (StoredFrame& frame : *page) {
+      std::string reason = std::exchange(frame.reason, {});
+      if (!frame.done) active.frames[frame.frame].reason = active.reasons.share(std::move(reason));
+      all.push_back(std::move(frame));
+    }
+  }
+}
+
 /// The frames of the job that are over, but for those that are rendered again.
 core::Result<RestoredJob> JobRecovery::restore_frames(ActiveJob& active) {
   const auto id = static_cast<uint64_t>(active.id);
-  const auto frames = context_.store->frames(id);
+  const auto frames = frames_over(active);
   if (!frames) return frames.error();
   const auto repeated = frames_to_repeat(active, *frames);
   if (!repeated) return repeated.error();
@@ -269,6 +288,7 @@ core::Result<RestoredJob> JobRecovery::restore_frames(ActiveJob& active) {
   for (const StoredFrame& frame : *frames) {
     FrameNote& note = active.frames[frame.frame];
     if (repeated->contains(frame.frame)) {
+      note.reason.reset();
       note.restarts = frame.restarts + 1;
       jobs_.note(
           active, v1::LOG_LEVEL_WARNING, frame.frame, {},
@@ -287,9 +307,8 @@ core::Result<RestoredJob> JobRecovery::restore_frames(ActiveJob& active) {
       note.samples_done = active.samples_per_frame;
       active.samples_done += note.samples_done;
     } else {
-      restored.failed.push_back({frame.frame, frame.reason});
+      restored.failed.push_back(frame.frame);
       note.state = v1::FRAME_STATE_FAILED;
-      note.reason = frame.reason;
       active.failed.insert(frame.frame);
     }
   }

@@ -65,6 +65,8 @@ class JobRecovery {
   core::Status give_up(uint64_t id, const core::Error& why);
   std::optional<bool> lacks_files(const v1::JobSpec& spec) HYADES_EXCLUDES(state_lock);
   // Of a job that nobody else knows yet.
+  core::Result<std::vector<StoredFrame>> frames_over(ActiveJob& active) const
+      HYADES_NO_THREAD_SAFETY_ANALYSIS;
   core::Result<RestoredJob> restore_frames(ActiveJob& active) HYADES_NO_THREAD_SAFETY_ANALYSIS;
   core::Result<std::vector<StoredOutput>> lost_outputs(uint64_t id) const;
   core::Result<std::set<int32_t>> frames_to_repeat(const ActiveJob& active,

@@ -330,7 +330,7 @@ void FrameLifecycle::over(ScheduledJob& job, FrameSlot& slot, FramePhase phase) 
     step_.say(FrameDone{job.id, slot.frame});
   } else {
     ++job.frames_failed;
-    step_.say(FrameFailed{job.id, slot.frame, slot.reason});
+    step_.say(FrameFailed{job.id, slot.frame, std::exchange(slot.reason, {})});
   }
   open(job);
   jobs_.end_if_over(job);

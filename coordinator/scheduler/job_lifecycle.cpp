@@ -35,11 +35,10 @@ void JobLifecycle::restore(ScheduledJob& job, const RestoredJob& restored) {
       ++job.frames_done;
     }
   }
-  for (const FailedFrame& failed : restored.failed) {
-    FrameSlot* slot = job.slot(failed.frame);
+  for (const int32_t frame : restored.failed) {
+    FrameSlot* slot = job.slot(frame);
     if (slot && slot->phase == FramePhase::waiting) {
       slot->phase = FramePhase::failed;
-      slot->reason = failed.reason;
       ++job.frames_failed;
     }
   }

@@ -74,7 +74,7 @@ struct FailedFrame {
 /// What is known of a job from before a restart.
 struct RestoredJob {
   std::vector<int32_t> finished;  ///< frames whose outputs are there
-  std::vector<FailedFrame> failed;
+  std::vector<int32_t> failed;
   std::vector<AcceptedUnit> accepted;  ///< of the other frames
   std::vector<int32_t> set_aside;      ///< of these, those whose film takes no memory (SetAside)
   bool disputed = false;               ///< some of them may be wrong (DisputeRecord)

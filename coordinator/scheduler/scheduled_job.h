@@ -70,7 +70,7 @@ struct FrameSlot {
   };
   std::vector<Left> left;
   std::unique_ptr<FrameLedger> ledger;
-  std::string reason;  ///< why it failed
+  std::string reason;  ///< why it fails, until that is durable
 
   /// Threads of all workers that have units of it.
   uint64_t threads() const { return assigned_threads + prefetching_threads; }

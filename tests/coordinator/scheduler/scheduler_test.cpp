@@ -177,7 +177,7 @@ TEST(Scheduler, RestartContinuesWithWhatWasAccepted) {
   Bench b;
   RestoredJob restored;
   restored.finished = {1};
-  restored.failed = {{2, "no"}};
+  restored.failed = {2};
   const core::PixelRect left{0, 0, 32, 32};
   const core::PixelRect right{32, 0, 64, 32};
   restored.accepted = {{{3, left, {0, 1}}, digest(1), "class"},
@@ -273,7 +273,7 @@ TEST(Scheduler, VeryManyFailedFramesBeginAgain) {
   RestoredJob restored;
   for (int32_t frame = 0; frame < 200'000; ++frame) {
     plan.frames.push_back(frame);
-    if (frame > 0) restored.failed.push_back({frame, "broken"});
+    if (frame > 0) restored.failed.push_back(frame);
   }
   const auto begin = std::clock();
   bench.scheduler.handle(JobAdded{kJob, plan, restored}, bench.now);

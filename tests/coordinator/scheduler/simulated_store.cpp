@@ -109,13 +109,13 @@ void SimulatedWorld::store(const FrameFinishedRecord& done) {
 }
 
 void SimulatedWorld::store(const FrameFailedRecord& failed) {
-  jobs_.at(failed.job).stored.failed.push_back(failed.failed);
+  jobs_.at(failed.job).stored.failed.push_back(failed.failed.frame);
 }
 
 void SimulatedWorld::store(const FrameRestartedRecord& again) {
   SimJob& job = jobs_.at(again.job);
   std::erase(job.stored.finished, again.frame);
-  std::erase_if(job.stored.failed, [&](const FailedFrame& f) { return f.frame == again.frame; });
+  std::erase(job.stored.failed, again.frame);
   std::erase_if(job.stored.accepted,
                 [&](const AcceptedUnit& u) { return u.unit.frame == again.frame; });
   std::erase_if(job.stored_units, [&](const UnitName& u) { return std::get<0>(u) == again.frame; });

@@ -121,7 +121,7 @@ void SimulatedWorld::start_coordinator() {
       frame.over = false;
     }
     for (const int32_t f : job.stored.finished) job.frames[f].over = true;
-    for (const FailedFrame& f : job.stored.failed) job.frames[f.frame].over = true;
+    for (const int32_t f : job.stored.failed) job.frames[f].over = true;
     for (const AcceptedUnit& a : job.stored.accepted) add_to_film(job, a, 0);
     tell(JobAdded{id, job.plan, job.stored});
     if (job.paused) tell(JobPaused{id});
