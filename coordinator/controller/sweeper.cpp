@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <mutex>
 #include <system_error>
+#include <thread>
 #include <unordered_set>
 #include <utility>
 #include <vector>
@@ -18,12 +19,15 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr uint32_t kPage = 64;  // jobs whose files are looked at without a pause for others
-constexpr uint64_t kRows = 0;   // no job has this number
+constexpr uint64_t kPageBytes = uint64_t{16} << 20U;  // of what jobs ask for, in memory together
+/// Files that are looked at, and perhaps removed, before others may submit.
+constexpr size_t kNamesAtOnce = 1000;
+constexpr uint64_t kRows = 0;  // no job has this number
 /// Of what is left of removed jobs, with a pause between two pieces.
 constexpr uint32_t kPieceRows = 500;
 constexpr uint64_t kPieceFiles = 1000;
 constexpr Duration kPieceEvery = std::chrono::milliseconds(10);
+constexpr Duration kOthersTurn = std::chrono::milliseconds(1);
 constexpr Duration kTryAgain = std::chrono::seconds(1);
 constexpr Duration kShortestRound = std::chrono::milliseconds(100);
 constexpr Duration kLongestRound = std::chrono::minutes(10);
@@ -98,8 +102,9 @@ bool Sweeper::sweep_folders() {
 /// `names`.
 core::Status Sweeper::spare_needed(std::unordered_set<std::string>& names, uint64_t& after) {
   while (!names.empty() && !context_.stop) {
-    const auto page = context_.store->specs(after, kPage);
+    const auto page = context_.store->specs(after, kPageBytes);
     if (!page) return page.error();
+    if (page->empty()) return {};
     for (const StoredSpec& stored : *page) {
       v1::JobSpec spec;
       if (!spec.ParseFromString(stored.spec)) {
@@ -112,7 +117,6 @@ core::Status Sweeper::spare_needed(std::unordered_set<std::string>& names, uint6
       }
       after = stored.id;
     }
-    if (page->size() < kPage) return {};
   }
   return {};
 }
@@ -126,19 +130,23 @@ core::Status Sweeper::sweep_assets(Duration grace) {
   uint64_t seen = 0;
   if (core::Status spared = spare_needed(names, seen); !spared) return spared;
   unclaimed_.keep_only(names);
-  bool all = !context_.stop;
-  if (!names.empty()) {
-    // No submission comes between the last look and the removal: it finds its files here, or not.
-    const std::lock_guard one(context_.submissions);
-    if (core::Status spared = spare_needed(names, seen); !spared) return spared;
-    for (const std::string& name : names) {
-      if (context_.stop) return {};
-      const bool gone = context_.assets->remove_unused(name, grace);
-      if (gone) unclaimed_.remove(name);
-      all = all && gone;
+  bool all = true;
+  while (!names.empty() && !context_.stop) {
+    {
+      // No submission comes between the last look and the removal: it finds its files here, or not.
+      const std::lock_guard one(context_.submissions);
+      if (core::Status spared = spare_needed(names, seen); !spared) return spared;
+      for (size_t i = 0; i < kNamesAtOnce && !names.empty(); ++i) {
+        const auto name = names.begin();
+        const bool gone = context_.assets->remove_unused(*name, grace);
+        if (gone) unclaimed_.remove(*name);
+        all = all && gone;
+        names.erase(name);
+      }
     }
+    std::this_thread::sleep_for(kOthersTurn);
   }
-  if (all) swept_changes_ = changes;
+  if (all && !context_.stop) swept_changes_ = changes;
   return {};
 }
 

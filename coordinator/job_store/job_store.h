@@ -166,8 +166,9 @@ class JobStore {
   virtual core::Result<std::optional<StoredJob>> summary(uint64_t id) = 0;
   /// Nothing where there is no such job.
   virtual core::Result<std::optional<StoredState>> state(uint64_t id) = 0;
-  /// The specs of the first `limit` jobs with ids above `after`, the oldest first.
-  virtual core::Result<std::vector<StoredSpec>> specs(uint64_t after, uint32_t limit) = 0;
+  /// The specs of some jobs with ids above `after`, the oldest first: one at least where there is
+  /// any, and no others once they have `most_bytes` together.
+  virtual core::Result<std::vector<StoredSpec>> specs(uint64_t after, uint64_t most_bytes) = 0;
   /// Jobs with ids below `before` (0: all), the newest first, without their specs.
   virtual core::Result<std::vector<StoredJob>> list(bool ended, const std::string& owner,
                                                     uint64_t before, uint32_t limit) = 0;

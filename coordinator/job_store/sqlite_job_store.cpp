@@ -193,14 +193,17 @@ class SqliteJobStore final : public JobStore {
     return std::optional<StoredState>();
   }
 
-  core::Result<std::vector<StoredSpec>> specs(uint64_t after, uint32_t limit) override {
+  core::Result<std::vector<StoredSpec>> specs(uint64_t after, uint64_t most_bytes) override {
     const core::MutexLock lock(mutex_);
-    Query rows(db_.get(),
-               "SELECT job, spec FROM specs WHERE job > ? AND job IN (SELECT id FROM jobs) ORDER "
-               "BY job LIMIT ?");
-    rows.bind(number(after)).bind(int64_t{limit});
+    Query rows = query(
+        "SELECT job, spec FROM specs WHERE job > ? AND job IN (SELECT id FROM jobs) "
+        "ORDER BY job LIMIT ?");
+    rows.bind(number(after)).bind(int64_t{kRowsAtOnce});
     std::vector<StoredSpec> specs;
-    while (rows.next()) specs.push_back({static_cast<uint64_t>(rows.integer(0)), rows.bytes(1)});
+    for (uint64_t bytes = 0; (specs.empty() || bytes < most_bytes) && rows.next();) {
+      specs.push_back({static_cast<uint64_t>(rows.integer(0)), rows.bytes(1)});
+      bytes += specs.back().spec.size();
+    }
     if (core::Status status = rows.status(); !status) return status.error();
     return specs;
   }

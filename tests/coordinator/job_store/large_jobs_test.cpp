@@ -223,6 +223,23 @@ TEST_F(LargeJobs, AreListedAndChangedWithoutTheirSpecs) {
   EXPECT_EQ((*store_->job(7))->spec, job.spec);
 }
 
+TEST_F(LargeJobs, ShowWhatTheyAskForPageByPage) {
+  StoredJob job = job_of("ada");
+  job.spec = std::string(1000, 's');
+  for (int i = 0; i < 7; ++i) ASSERT_TRUE(store_->add_job(job).ok());
+  ASSERT_TRUE(store_->remove_job(4).ok());
+  std::vector<std::vector<uint64_t>> pages;
+  for (uint64_t after = 0;; after = pages.back().back()) {
+    const auto page = store_->specs(after, 1500);
+    ASSERT_TRUE(page.ok());
+    if (page->empty()) break;
+    pages.emplace_back();
+    for (const StoredSpec& one : *page) pages.back().push_back(one.id);
+  }
+  EXPECT_EQ(pages, (std::vector<std::vector<uint64_t>>{{1, 2}, {3, 5}, {6, 7}}));
+  EXPECT_EQ(store_->specs(0, 0)->size(), 1U);
+}
+
 TEST_F(LargeJobs, OfOthersAreNotLookedThroughForAnOwners) {
   for (int i = 0; i < 500; ++i) ASSERT_TRUE(store_->add_job(job_of(i == 250 ? "eve" : "ada")).ok());
   open_raw();

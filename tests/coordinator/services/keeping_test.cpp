@@ -232,6 +232,27 @@ TEST(Keeping, AJobOfManyRowsIsDeletedBesideOthers) {
   }));
 }
 
+TEST(Keeping, ManyUnusedFilesGoInTurnsWithSubmissions) {
+  FarmWorld world;
+  world.options.asset_grace = 0ms;
+  const auto trouble = std::make_shared<Trouble>();
+  world.wrap_store = [&](std::unique_ptr<JobStore> store) {
+    return std::make_unique<TroubledStore>(std::move(store), trouble);
+  };
+  const std::string assets = world.options.folder + "/assets";
+  std::filesystem::create_directories(assets);
+  for (int i = 0; i < 4500; ++i) {
+    std::ofstream(assets + "/" + core::to_hex(core::sha256(std::to_string(i)))) << i;
+  }
+  world.start();
+  ASSERT_TRUE(eventually([&] {
+    const auto names = world.controller->assets().names();
+    return names.empty();
+  }));
+  // Before each thousand of them: submissions may have come in between.
+  EXPECT_GE(trouble->looks(), 5);
+}
+
 TEST(Keeping, FoldersGoInPiecesAndTheirLinksAlone) {
   const test::TempFolder folder;
   const std::string job = folder.file("job");

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <atomic>
 #include <condition_variable>
 #include <memory>
 #include <mutex>
@@ -37,6 +38,10 @@ class Trouble {
     const std::lock_guard lock(mutex_);
     return most_waiting_;
   }
+
+  /// How often it was looked what jobs ask for.
+  int looks() const { return looks_; }
+  void count_look() { ++looks_; }
 
   /// How many calls have failed.
   int failed() const {
@@ -75,6 +80,7 @@ class Trouble {
   Kind outputs_ = Kind::none;
   Kind states_ = Kind::none;
   Kind drops_ = Kind::none;
+  std::atomic<int> looks_{0};
   int waiting_ = 0;
   int most_waiting_ = 0;
   int failed_ = 0;
@@ -114,8 +120,9 @@ class TroubledStore final : public JobStore {
     if (core::Status passed = trouble_->read_state(); !passed) return passed.error();
     return read([&] { return store_->state(id); });
   }
-  core::Result<std::vector<StoredSpec>> specs(uint64_t after, uint32_t limit) override {
-    return read([&] { return store_->specs(after, limit); });
+  core::Result<std::vector<StoredSpec>> specs(uint64_t after, uint64_t most_bytes) override {
+    trouble_->count_look();
+    return read([&] { return store_->specs(after, most_bytes); });
   }
   core::Result<std::vector<StoredJob>> list(bool ended, const std::string& owner, uint64_t before,
                                             uint32_t limit) override {
