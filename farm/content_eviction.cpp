@@ -82,6 +82,8 @@ bool write_count(int file, uint64_t count) {
   return core::write_all_at(file, std::as_bytes(std::span(&count, 1)), 0);
 }
 
+std::string name_in(const std::string& path) { return path.substr(path.rfind('/') + 1); }
+
 /// Removes `path` unless somebody holds a lock on it.
 bool remove_if_free(const std::string& path) {
   const core::Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW));
@@ -225,7 +227,9 @@ uint64_t ContentStore::evict(const std::string& begun, uint64_t used) {
   const uint64_t enough = options_.budget - options_.budget / kSpare;
   for (const StoredFile& file : files) {
     if (used <= enough) break;
-    if (remove_if_free(file.path)) used -= file.size;
+    if (!remove_if_free(file.path)) continue;
+    used -= file.size;
+    forget(name_in(file.path));
   }
   return used;
 }
@@ -235,7 +239,7 @@ std::vector<std::string> ContentStore::names() const {
   list_files(options_.folder, files);
   std::vector<std::string> names;
   names.reserve(files.size());
-  for (const StoredFile& file : files) names.push_back(file.path.substr(file.path.rfind('/') + 1));
+  for (const StoredFile& file : files) names.push_back(name_in(file.path));
   return names;
 }
 
@@ -257,7 +261,9 @@ bool ContentStore::remove_unused(const std::string& name, std::chrono::nanosecon
   const int64_t now = std::chrono::duration_cast<std::chrono::nanoseconds>(
                           std::chrono::system_clock::now().time_since_epoch())
                           .count();
-  return now - used >= age.count() && remove_if_free(path);
+  if (now - used < age.count() || !remove_if_free(path)) return false;
+  forget(name);
+  return true;
 }
 
 }  // namespace hyades::farm

@@ -78,6 +78,16 @@ void ContentStore::remember(const std::string& name, const Identity& identity) {
   verified_[name] = identity;
 }
 
+void ContentStore::forget(const std::string& name) {
+  const core::MutexLock lock(mutex_);
+  verified_.erase(name);
+}
+
+size_t ContentStore::known() const {
+  const core::MutexLock lock(mutex_);
+  return verified_.size();
+}
+
 bool ContentStore::contains(const std::string& name, uint64_t size) {
   if (!is_content_name(name)) return false;
   const auto identity = identify(path_of(name));
@@ -111,6 +121,7 @@ Result<Bytes> ContentStore::read(const std::string& name) {
     const auto now = identify(path);
     const bool removed = now && *now == *identity && ::unlink(path.c_str()) == 0;
     const core::MutexLock lock(mutex_);
+    verified_.erase(name);
     damaged_.insert(name);
     return Error{"asset " + name + ": the stored file " +
                  (removed ? "was damaged and has been removed" : "is damaged")};
@@ -125,10 +136,7 @@ std::set<std::string> ContentStore::take_damaged() {
 }
 
 void ContentStore::check_again(const std::string& name) {
-  {
-    const core::MutexLock lock(mutex_);
-    verified_.erase(name);
-  }
+  forget(name);
   (void)read(name);
 }
 
@@ -208,6 +216,7 @@ uint64_t ContentStore::begun(const std::string& name, const std::string& owner) 
 
 Status ContentStore::remove(const std::string& name) {
   if (!is_content_name(name)) return not_a_name(name);
+  forget(name);
   if (::unlink(path_of(name).c_str()) == 0 || errno == ENOENT) return {};
   return Error{"cannot remove " + path_of(name) + ": " + core::io_reason(errno)};
 }

@@ -2,6 +2,7 @@
 
 #include <atomic>
 #include <chrono>
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <map>
@@ -125,6 +126,8 @@ class ContentStore {
   /// are free. One that got a byte within the last minute stays: it may be between two pieces. How
   /// many bytes that were.
   uint64_t free_partials(uint64_t bytes);
+  /// How many files this process knows to be what their names promise.
+  size_t known() const;
   /// How many files this process has completed so far.
   uint64_t commits() const { return commits_; }
   /// Bytes that this process' writers have still to write.
@@ -152,6 +155,7 @@ class ContentStore {
   std::string partial_path(const std::string& name, const std::string& owner) const;
   static core::Result<Identity> identify(const std::string& path);
   void remember(const std::string& name, const Identity& identity);
+  void forget(const std::string& name);
   /// Evicts until `bytes` more fit, of which there are some in the unfinished file `begun` (empty:
   /// none).
   core::Status make_room(const std::string& begun, uint64_t bytes, bool* crowded = nullptr);
@@ -180,7 +184,7 @@ class ContentStore {
   core::Mutex partials_mutex_;
   /// Unfinished files that this process writes, by their path, and how large they will be.
   std::map<std::string, uint64_t> writing_ HYADES_GUARDED_BY(partials_mutex_);
-  core::Mutex mutex_;
+  mutable core::Mutex mutex_;
   std::map<std::string, Identity> verified_ HYADES_GUARDED_BY(mutex_);
   std::set<std::string> damaged_ HYADES_GUARDED_BY(mutex_);
 };

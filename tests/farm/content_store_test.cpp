@@ -49,6 +49,19 @@ TEST(ContentStore, KeepsFilesByContent) {
   EXPECT_TRUE(fs::is_empty(folder.file("assets/partial")));
 }
 
+TEST(ContentStore, WhatIsGoneTakesNoMemory) {
+  const TempFolder folder;
+  const auto store = open_store(folder.file("assets"), 1000);
+  for (int i = 0; i < 10; ++i) put(*store, std::to_string(i));
+  EXPECT_EQ(store->known(), 10U);
+  for (int i = 0; i < 4; ++i) EXPECT_TRUE(store->remove_unused(name_of(std::to_string(i)), {}));
+  for (int i = 4; i < 8; ++i) EXPECT_TRUE(store->remove(name_of(std::to_string(i))));
+  EXPECT_EQ(store->known(), 2U);
+  put(*store, std::string(950, 'x'));
+  put(*store, std::string(950, 'y'));
+  EXPECT_EQ(store->known(), 1U) << "others were evicted";
+}
+
 TEST(ContentStore, ResumesWhatWasBegun) {
   const TempFolder folder;
   const std::string text(100'000, 'x');
