@@ -1,7 +1,5 @@
 #include "cli/blend_job.h"
 
-#include <stdlib.h>
-
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -61,15 +59,6 @@ Result<std::string> find_script() {
       "holds hyades_render in the environment variable HYADES_BLENDER_ADDON"};
 }
 
-Result<std::string> make_folder() {
-  std::error_code failed;
-  std::string name = (fs::temp_directory_path(failed) / "hyades-blend-XXXXXX").string();
-  if (failed || ::mkdtemp(name.data()) == nullptr) {
-    return Error{"no temporary folder could be made: expected TMPDIR to name one"};
-  }
-  return name;
-}
-
 std::string text_of(const std::string& path) {
   std::ostringstream text;
   text << std::ifstream(path, std::ios::binary).rdbuf();
@@ -107,30 +96,26 @@ Result<std::unique_ptr<BlendJob>> BlendJob::make(const std::string& path,
   if (!blender) return blender.error();
   const auto script = find_script();
   if (!script) return script.error();
-  auto folder = make_folder();
-  if (!folder) return folder.error();
-  std::unique_ptr<BlendJob> job(new BlendJob(*folder));
+  auto temporary = TemporaryFolder::make("hyades-blend-");
+  if (!temporary) return temporary.error();
+  const std::string folder = (*temporary)->path();
+  std::unique_ptr<BlendJob> job(new BlendJob(std::move(*temporary)));
   // Not the user's settings, and none of the scene's own scripts.
   auto child = core::ChildProcess::start(
       *blender, {"--background", "--factory-startup", "--disable-autoexec", "-noaudio",
                  fs::absolute(path).string(), "--python-exit-code", "1", "--python", *script, "--",
-                 *folder, frames});
+                 folder, frames});
   if (!child) return child.error();
   const core::Status done = child->finish([] { return core::Status(); });
-  std::string why = text_of(*folder + "/error.txt");
+  std::string why = text_of(folder + "/error.txt");
   while (!why.empty() && why.back() == '\n') why.pop_back();
   if (!why.empty()) return Error{path + ": " + why};
   std::error_code none;
   if (!fs::exists(job->path(), none)) {
     return Error{path + ": " + (done ? "Blender made no job of it" : why_of(done.error().message))};
   }
-  print_notes(lines_of(*folder + "/notes.txt"));
+  print_notes(lines_of(folder + "/notes.txt"));
   return job;
-}
-
-BlendJob::~BlendJob() {
-  std::error_code ignored;
-  fs::remove_all(folder_, ignored);
 }
 
 }  // namespace hyades::cli

@@ -4,6 +4,7 @@
 #include <string>
 #include <utility>
 
+#include "cli/temporary_folder.h"
 #include "core/base/result.h"
 
 namespace hyades::cli {
@@ -12,7 +13,7 @@ namespace hyades::cli {
 bool is_blend_file(const std::string& path);
 
 /// The job that Blender makes of a .blend with Hyades' add-on, in a temporary folder that goes with
-/// this object.
+/// this object, or with the process.
 class BlendJob {
  public:
   /// Opens `path` in Blender: the program that the environment variable HYADES_BLENDER names, else
@@ -21,17 +22,14 @@ class BlendJob {
   /// add-on refuses.
   static core::Result<std::unique_ptr<BlendJob>> make(const std::string& path,
                                                       const std::string& frames);
-  ~BlendJob();
-  BlendJob(const BlendJob&) = delete;
-  BlendJob& operator=(const BlendJob&) = delete;
 
   /// The file of the job.
-  std::string path() const { return folder_ + "/job.yaml"; }
+  std::string path() const { return folder_->path() + "/job.yaml"; }
 
  private:
-  explicit BlendJob(std::string folder) : folder_(std::move(folder)) {}
+  explicit BlendJob(std::unique_ptr<TemporaryFolder> folder) : folder_(std::move(folder)) {}
 
-  std::string folder_;
+  std::unique_ptr<TemporaryFolder> folder_;
 };
 
 }  // namespace hyades::cli

@@ -3,7 +3,9 @@
 import os
 import pathlib
 import shutil
+import signal
 import subprocess
+import time
 import unittest
 
 import bpy
@@ -50,6 +52,29 @@ class CommandLine(AddOnTest):
         bpy.ops.hyades.export_job(filepath=str(job))
         here = hyades.render(job, self.folder / "here").picture().array
         numpy.testing.assert_array_equal(there, here)
+
+    def test_nothing_stays_where_it_is_ended(self) -> None:
+        blend = self.save()
+        environment = {
+            **os.environ,
+            "HYADES_BLENDER": os.environ.get("HYADES_BLENDER") or bpy.app.binary_path,
+            "HYADES_BLENDER_ADDON": str(ROOT / "blender"),
+            "TMPDIR": str(self.folder),
+        }
+        words = [HYADES, "render", blend, "--samples", "100000", "--output", self.folder / "out"]
+        for how in (signal.SIGINT, signal.SIGKILL):
+            run = subprocess.Popen(list(map(str, words)), cwd=self.folder, env=environment, stderr=subprocess.DEVNULL)
+            self.wait_until(lambda: list(self.folder.glob("hyades-blend-*/job.yaml")))
+            time.sleep(0.5)
+            run.send_signal(how)
+            run.wait(30)
+            self.wait_until(lambda: not list(self.folder.glob("hyades-blend-*")))
+
+    def wait_until(self, true) -> None:
+        end = time.monotonic() + 60
+        while not true():
+            self.assertLess(time.monotonic(), end)
+            time.sleep(0.05)
 
     def test_frames_of_an_animation(self) -> None:
         cube = bpy.data.objects["Cube"]
