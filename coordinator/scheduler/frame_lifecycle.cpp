@@ -15,6 +15,8 @@ namespace {
 constexpr Duration kLongestFrame = std::chrono::hours(24);
 /// How many times its patience lets the farm do without slow workers' beginnings.
 constexpr int kSlowFor = 12;
+/// Failed frames of a job that begin again together.
+constexpr uint32_t kReturnAtOnce = 1000;
 /// A film that could not be set aside stays for so long.
 constexpr Duration kStays = std::chrono::seconds(10);
 
@@ -201,9 +203,18 @@ void FrameLifecycle::restart(ScheduledJob& job, FrameSlot& slot) {
   records_.persist(FrameRestartedRecord{job.id, slot.frame});
 }
 
+void FrameLifecycle::bring_back_failed(ScheduledJob& job) {
+  size_t& next = *job.bring_back_from;
+  for (; next < job.slots.size() && job.returning < kReturnAtOnce; ++next) {
+    if (job.slots[next].phase == FramePhase::failed) bring_back(job, job.slots[next]);
+  }
+  if (next == job.slots.size()) job.bring_back_from.reset();
+}
+
 void FrameLifecycle::bring_back(ScheduledJob& job, FrameSlot& slot) {
   if (slot.phase == FramePhase::failed) {
     --job.frames_failed;
+    ++job.returning;
     slot.phase = FramePhase::returning;
     records_.persist(FrameRestartedRecord{job.id, slot.frame});
     return;
@@ -233,6 +244,9 @@ void FrameLifecycle::reopen(ScheduledJob& job, FrameSlot& slot) {
 
 void FrameLifecycle::restarted(ScheduledJob& job, FrameSlot& slot) {
   const uint32_t index = job.index_of(slot);
+  if (slot.phase == FramePhase::returning && --job.returning == 0 && job.bring_back_from) {
+    bring_back_failed(job);
+  }
   slot.phase = FramePhase::waiting;
   films_.drop(job, slot);
   ++job.waiting;

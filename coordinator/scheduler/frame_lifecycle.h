@@ -54,6 +54,9 @@ class FrameLifecycle {
   /// Begins the frame again, which is in flight. Films of it that are on their way to the disk get
   /// there before the record that says so, and are void with it.
   void restart(ScheduledJob& job, FrameSlot& slot);
+  /// Begins failed frames of the job again, in their order from slot bring_back_from on: some, and
+  /// the next ones when these are durable. There may be a million.
+  void bring_back_failed(ScheduledJob& job);
   /// Begins a frame again that is over, or has films from before a restart of the coordinator and
   /// was not opened since.
   void bring_back(ScheduledJob& job, FrameSlot& slot);

@@ -91,9 +91,8 @@ void JobLifecycle::on(const JobReprioritised& e) {
 void JobLifecycle::on(const FramesRetried& e) {
   ScheduledJob* job = jobs_.find(e.job);
   if (job == nullptr) return;
-  for (FrameSlot& slot : job->slots) {
-    if (slot.phase == FramePhase::failed) frames_.bring_back(*job, slot);
-  }
+  job->bring_back_from = 0;
+  frames_.bring_back_failed(*job);
 }
 
 void JobLifecycle::on(const FramesSuspected& e) {

@@ -116,6 +116,11 @@ struct ScheduledJob {
   bool ready = false;  ///< listed among those that have work
   uint64_t offer = 0;  ///< free batches and disputed units when it was last looked at
 
+  /// Of failed frames that begin again some at a time: the slot from which on they are looked for;
+  /// nothing where none are.
+  std::optional<size_t> bring_back_from;
+  uint32_t returning = 0;  ///< frames that do, until that is durable
+
   DisputeMark mark = DisputeMark::none;
 
   uint32_t frames_done = 0;

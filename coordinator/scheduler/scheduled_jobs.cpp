@@ -44,6 +44,7 @@ void ScheduledJobs::end(ScheduledJob& job, bool cancelled) {
 }
 
 void ScheduledJobs::end_if_over(ScheduledJob& job) {
+  if (job.bring_back_from) return;
   if (job.frames_done + job.frames_failed == job.slots.size()) end(job, false);
 }
 

@@ -1,5 +1,6 @@
 // Jobs and frames, from opening to their end.
 #include <ctime>
+#include <deque>
 
 #include "tests/coordinator/scheduler/scheduler_testing.h"
 
@@ -277,17 +278,49 @@ TEST(Scheduler, VeryManyFailedFramesBeginAgain) {
   }
   const auto begin = std::clock();
   bench.scheduler.handle(JobAdded{kJob, plan, restored}, bench.now);
-  const std::vector<Action> said = bench.scheduler.handle(FramesRetried{kJob}, bench.now);
+  std::deque<RecordId> records;
   size_t restarted = 0;
-  for (const Action& action : said) {
-    const auto* persist = std::get_if<Persist>(&action);
-    if (persist == nullptr) continue;
-    ++restarted;
-    bench.scheduler.handle(Persisted{persist->id}, bench.now);
-  }
+  const auto tell = [&](const Event& event) {
+    const std::vector<Action> said = bench.scheduler.handle(event, bench.now);
+    EXPECT_LE(said.size(), 1010U) << "some at a time: all together would take all memory";
+    for (const Action& action : said) {
+      if (const auto* persist = std::get_if<Persist>(&action)) records.push_back(persist->id);
+    }
+  };
+  tell(FramesRetried{kJob});
+  for (; !records.empty(); records.pop_front(), ++restarted) tell(Persisted{records.front()});
   EXPECT_EQ(restarted, 199'999U);
   EXPECT_LT(static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC, 20.0);
   EXPECT_TRUE(bench.scheduler.knows(kJob));
+}
+
+// Those that are done may be all that begin again at first, and the job goes on.
+TEST(Scheduler, AJobWhoseFailedFramesBeginAgainSomeAtATimeEndsWithTheLast) {
+  SchedulerBench bench;
+  JobPlan plan;
+  plan.region = {0, 0, 0, 0};  // a frame without pixels is done at once
+  plan.frames_in_flight = 5000;
+  RestoredJob restored;
+  for (int32_t frame = 0; frame < 2500; ++frame) plan.frames.push_back(frame);
+  plan.frames.push_back(9999);
+  for (int32_t frame = 0; frame < 2500; ++frame) restored.failed.push_back(frame);
+  std::deque<Event> events{JobAdded{kJob, plan, restored}, FramesRetried{kJob}};
+  std::vector<JobEnded> ended;
+  for (; !events.empty(); events.pop_front()) {
+    for (const Action& action : bench.scheduler.handle(events.front(), bench.now)) {
+      if (const auto* persist = std::get_if<Persist>(&action)) {
+        events.emplace_back(Persisted{persist->id});
+      } else if (const auto* open = std::get_if<OpenFrame>(&action)) {
+        events.emplace_back(FrameOpened{open->job, open->frame});
+      } else if (const auto* finish = std::get_if<FinishFrame>(&action)) {
+        events.emplace_back(FinishDone{finish->job, finish->frame});
+      } else if (const auto* end = std::get_if<JobEnded>(&action)) {
+        ended.push_back(*end);
+      }
+    }
+  }
+  ASSERT_EQ(ended.size(), 1U);
+  EXPECT_EQ(ended[0].done, 2501U);
 }
 
 TEST(Scheduler, PausedJobsLeaseNothingAndTakeWhatComes) {
