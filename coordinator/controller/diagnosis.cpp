@@ -41,6 +41,9 @@ class Diagnosis::Reasons {
     last_ = fmt::format(format, std::forward<Parts>(parts)...);
     if (told_ <= kMostOfAKind) say(last_);
   }
+  /// Whether more of them would only be counted, which add() does at once.
+  bool is_full() const { return told_ > kMostOfAKind; }
+  void add(size_t more) { told_ += more; }
   void end_kind(const char* kind) {
     if (told_ == kMostOfAKind + 1) say(last_);
     if (told_ > kMostOfAKind + 1) say(fmt::format("{} more {}", told_ - kMostOfAKind, kind));
@@ -176,9 +179,13 @@ bool Diagnosis::explain_frames(const ActiveJob& active, const std::set<std::stri
     reasons.say_one("frame {} is rendered; its outputs are being made", number);
   }
   reasons.end_kind("frames are rendered; their outputs are being made");
+  size_t told = 0;
   for (const int32_t number : active.failed) {
+    if (reasons.is_full()) break;
     reasons.say_one("frame {} failed: {}", number, *active.frames.at(number).reason);
+    ++told;
   }
+  reasons.add(active.failed.size() - told);
   reasons.end_kind("frames failed");
   bool orphans = false;
   for (const int32_t number : active.in_work) {

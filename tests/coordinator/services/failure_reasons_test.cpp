@@ -65,6 +65,10 @@ TEST(FailureReasons, OfMoreFramesThanHaveRoomAreToldWhenTheJobHasEnded) {
     const ScriptedWorker worker(world.address, script);
     ASSERT_TRUE(eventually([&] { return world.get(job).job().frames_failed() == 39; }));
   }
+  const std::string explained = world.explain(job);
+  EXPECT_NE(explained.find("frame 20 failed"), std::string::npos) << explained;
+  EXPECT_EQ(explained.find("frame 21 failed"), std::string::npos);
+  EXPECT_NE(explained.find("19 more frames failed"), std::string::npos) << explained;
   for (int life = 0; life < 2; ++life) {
     EXPECT_GE(long_reasons(world, job), 10U);
     EXPECT_LE(long_reasons(world, job), FailureReasons::kMostBytes / 4000);
