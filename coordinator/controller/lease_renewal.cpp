@@ -50,7 +50,9 @@ void WorkerSessions::renew_leases(WorkerSession& session, const v1::Heartbeat& b
   WorkerAlive alive{session.id, {}};
   std::map<LeaseId, LeaseProgress> renewed;  // of those that are named
   std::set<LeaseId> named;
+  size_t left = entries_heard(session);
   for (const Progress& told : beat.leases()) {
+    if (left-- == 0) break;
     const LeaseId lease = from_wire(told.lease());
     // Of what somebody names twice, or invents, nothing is kept or done.
     if (!dispatcher_.scheduler().has_lease(session.id, lease)) continue;

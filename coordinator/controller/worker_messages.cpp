@@ -127,9 +127,19 @@ void WorkerSessions::on_failure(WorkerSession& session, const v1::UnitFailure& f
   want(session, failure.want(), turn);
 }
 
+/// How many units or leases a message may name: no more than the worker has, and some that were
+/// taken from it meanwhile. Each is looked up under the lock; of further ones nothing is heard.
+size_t WorkerSessions::entries_heard(const WorkerSession& session) const {
+  constexpr size_t kTakenMeanwhile = 64;
+  return dispatcher_.scheduler().leased_units(session.id) + 4 * size_t{session.hello.threads()} +
+         kTakenMeanwhile;
+}
+
 void WorkerSessions::on_returned(WorkerSession& session, const v1::UnitsReturned& message,
                                  Turn& turn) {
+  size_t left = entries_heard(session);
   for (const v1::LeasedUnit& returned : message.units()) {
+    if (left-- == 0) break;
     const auto unit = farm::from_wire(returned.unit());
     if (!unit || !has(session, returned, *unit)) continue;
     const JobId job{returned.job()};

@@ -84,6 +84,7 @@ class WorkerSessions {
   void want(WorkerSession& session, uint32_t units, Turn& turn) HYADES_REQUIRES(state_lock);
 
   // What workers say (worker_messages.cpp, lease_renewal.cpp).
+  size_t entries_heard(const WorkerSession& session) const HYADES_REQUIRES(state_lock);
   bool has(const WorkerSession& session, const v1::LeasedUnit& named, const core::Unit& unit) const
       HYADES_REQUIRES(state_lock);
   uint64_t longest_rendering(const WorkerSession& session, const v1::UnitResult& result,
