@@ -25,6 +25,16 @@ using core::Status;
 
 namespace {
 
+/// From here on who may come again does not wait while a file is hashed: it takes more than a
+/// moment.
+constexpr uint64_t kLarge = uint64_t{16} << 20U;
+/// Such files that are hashed at a time: of the threads that serve files others go on with the
+/// rest.
+constexpr size_t kMostLarge = 3;
+/// Of unfinished files of so many bytes it is kept how far their hash has come, and of how many.
+constexpr uint64_t kKept = uint64_t{1} << 20U;
+constexpr size_t kMostKept = 4096;
+
 Error not_a_name(const std::string& name) {
   return {"'" + name.substr(0, 80) + "' is not the SHA-256 of a file (64 digits of 0-9 and a-f)"};
 }
@@ -88,12 +98,12 @@ size_t ContentStore::known() const {
   return verified_.size();
 }
 
-bool ContentStore::contains(const std::string& name, uint64_t size) {
+bool ContentStore::contains(const std::string& name, uint64_t size, bool* busy) {
   if (!is_content_name(name)) return false;
   const auto identity = identify(path_of(name));
   if (!identity) return false;
   // A wrong size is the file's or the caller's fault: the bytes know.
-  return identity->size == size || read(name).ok();
+  return identity->size == size || read(name, busy).ok();
 }
 
 bool ContentStore::missing(const std::string& name) const {
@@ -101,7 +111,36 @@ bool ContentStore::missing(const std::string& name) const {
   return !is_content_name(name) || (::stat(path_of(name).c_str(), &info) != 0 && errno == ENOENT);
 }
 
-Result<Bytes> ContentStore::read(const std::string& name) {
+ContentStore::Hashing::Hashing(ContentStore& store, std::string path, uint64_t bytes, bool* busy)
+    : store_(store), path_(std::move(path)), large_(bytes >= kLarge) {
+  const core::MutexLock lock(store_.mutex_);
+  const bool waits = busy == nullptr || !large_;
+  while (!begin()) {
+    if (!waits) {
+      *busy = true;
+      return;
+    }
+    store_.hashed_.wait(store_.mutex_);
+  }
+  begun_ = true;
+}
+
+ContentStore::Hashing::~Hashing() {
+  if (!begun_) return;
+  const core::MutexLock lock(store_.mutex_);
+  store_.hashing_.erase(path_);
+  store_.large_hashing_ -= large_ ? 1 : 0;
+  store_.hashed_.notify_all();
+}
+
+bool ContentStore::Hashing::begin() {
+  if (large_ && store_.large_hashing_ >= kMostLarge) return false;
+  if (!store_.hashing_.insert(path_).second) return false;
+  store_.large_hashing_ += large_ ? 1 : 0;
+  return true;
+}
+
+Result<Bytes> ContentStore::read(const std::string& name, bool* busy) {
   if (!is_content_name(name)) return not_a_name(name);
   const std::string path = path_of(name);
   const auto identity = identify(path);
@@ -109,13 +148,16 @@ Result<Bytes> ContentStore::read(const std::string& name) {
   auto bytes = core::map_file(path);
   if (!bytes) return bytes.error().in("asset " + name);
   touch(name);
-  {
+  const auto is_known = [&] {
     const core::MutexLock lock(mutex_);
     const auto known = verified_.find(name);
-    if (known != verified_.end() && known->second == *identity && bytes->size() == identity->size) {
-      return bytes;
-    }
-  }
+    return known != verified_.end() && known->second == *identity &&
+           bytes->size() == identity->size;
+  };
+  if (is_known()) return bytes;
+  const Hashing turn(*this, path, bytes->size(), busy);
+  if (!turn.begun()) return Error{"asset " + name + ": it is still being checked"};
+  if (is_known()) return bytes;
   if (core::to_hex(core::sha256(bytes->span())) != name) {
     // Another process may have put a good one there meanwhile.
     const auto now = identify(path);
@@ -183,8 +225,32 @@ Result<ContentWriter> ContentStore::write(const std::string& name, uint64_t size
     writing_[writer.path_] = size;
     writer.counted_ = true;
   }
-  if (auto read = writer.read_partial(); !read) return read.error();
+  take_kept(writer);
+  if (auto read = writer.read_partial(whose.busy); !read) return read.error();
   return writer;
+}
+
+void ContentStore::take_kept(ContentWriter& writer) {
+  const auto now = identify(writer.path_);
+  const core::MutexLock lock(partials_mutex_);
+  const auto kept = kept_.extract(writer.path_);
+  if (!kept || !now || *now != kept.mapped().identity || now->size > writer.size_) return;
+  writer.hash_ = std::move(kept.mapped().hash);
+  writer.offset_ = now->size;
+  expected_ -= now->size;
+}
+
+void ContentStore::keep(ContentWriter& writer) {
+  const auto now = identify(writer.path_);
+  if (!now || now->size != writer.offset_ || now->size < kKept) return;
+  const core::MutexLock lock(partials_mutex_);
+  if (kept_.size() >= kMostKept) {
+    // The shortest is the quickest to be read again.
+    kept_.erase(std::min_element(kept_.begin(), kept_.end(), [](const auto& a, const auto& b) {
+      return a.second.identity.size < b.second.identity.size;
+    }));
+  }
+  kept_.insert_or_assign(writer.path_, Kept{*now, std::move(writer.hash_)});
 }
 
 Status ContentStore::commit(ContentWriter& writer) {

@@ -16,6 +16,7 @@
 
 #include "core/base/bytes.h"
 #include "core/base/descriptor.h"
+#include "core/base/hash.h"
 #include "core/base/mutex.h"
 #include "core/base/result.h"
 #include "farm/content_writer.h"
@@ -49,6 +50,8 @@ struct Uploader {
   /// Whether he may have one more beside those that he has; none: he may. Asked more than once, of
   /// which the last answer counts, and must not use the store.
   std::function<core::Status(const UnfinishedFiles& others)> may_begin{};
+  /// Where not null, nobody waits: see ContentStore::read().
+  bool* busy = nullptr;
 };
 
 /// Files named by the SHA-256 of their bytes, in one folder. A file has its name only once all its
@@ -78,8 +81,8 @@ class ContentStore {
   static core::Result<std::unique_ptr<ContentStore>> open(const Options& options);
 
   /// Whether there is a file `name`. One that has not `size` bytes is checked first, so that a
-  /// truncated file counts as missing.
-  bool contains(const std::string& name, uint64_t size);
+  /// truncated file counts as missing. `busy` as for read().
+  bool contains(const std::string& name, uint64_t size, bool* busy = nullptr);
 
   /// Whether there is surely no file `name`; one that cannot be looked at now may be there.
   bool missing(const std::string& name) const;
@@ -87,7 +90,10 @@ class ContentStore {
   /// The bytes of file `name`, mapped. They are hashed when this process first reads the file and
   /// whenever the file changed since. Errors: no such file, damaged (it is removed, where this
   /// process may), unreadable.
-  core::Result<core::Bytes> read(const std::string& name);
+  /// One thread hashes a file, and others that want it wait. Who gives `busy` does not, as long as
+  /// large files take: where somebody hashes it, or as many as may hash large ones, that becomes
+  /// true, and it is an error, for now.
+  core::Result<core::Bytes> read(const std::string& name, bool* busy = nullptr);
 
   /// The names of files that read() found damaged since the last call.
   std::set<std::string> take_damaged();
@@ -156,6 +162,30 @@ class ContentStore {
   static core::Result<Identity> identify(const std::string& path);
   void remember(const std::string& name, const Identity& identity);
   void forget(const std::string& name);
+  /// A turn to hash a file; see read().
+  class Hashing {
+   public:
+    /// Of the file at `path`. Waits; where `busy` is given and the file is large, that becomes true
+    /// instead.
+    Hashing(ContentStore& store, std::string path, uint64_t bytes, bool* busy);
+    ~Hashing();
+    Hashing(const Hashing&) = delete;
+    Hashing& operator=(const Hashing&) = delete;
+    /// Whether it is this one's turn.
+    bool begun() const { return begun_; }
+
+   private:
+    bool begin() HYADES_REQUIRES(store_.mutex_);
+
+    ContentStore& store_;
+    const std::string path_;
+    const bool large_;
+    bool begun_ = false;
+  };
+  /// Takes over what is known of the unfinished file that the writer has taken; see kept_.
+  void take_kept(ContentWriter& writer);
+  /// Keeps what the writer knows of the unfinished file that it leaves.
+  void keep(ContentWriter& writer);
   /// Evicts until `bytes` more fit, of which there are some in the unfinished file `begun` (empty:
   /// none).
   core::Status make_room(const std::string& begun, uint64_t bytes, bool* crowded = nullptr);
@@ -184,7 +214,17 @@ class ContentStore {
   core::Mutex partials_mutex_;
   /// Unfinished files that this process writes, by their path, and how large they will be.
   std::map<std::string, uint64_t> writing_ HYADES_GUARDED_BY(partials_mutex_);
+  /// How far the hash of an unfinished file has come that nobody writes now, so that whoever goes
+  /// on with it does not read all of it again. Of large ones, by their path.
+  struct Kept {
+    Identity identity;
+    core::Sha256Stream hash;
+  };
+  std::map<std::string, Kept> kept_ HYADES_GUARDED_BY(partials_mutex_);
   mutable core::Mutex mutex_;
+  core::CondVar hashed_;
+  std::set<std::string> hashing_ HYADES_GUARDED_BY(mutex_);  ///< paths
+  size_t large_hashing_ HYADES_GUARDED_BY(mutex_) = 0;
   std::map<std::string, Identity> verified_ HYADES_GUARDED_BY(mutex_);
   std::set<std::string> damaged_ HYADES_GUARDED_BY(mutex_);
 };

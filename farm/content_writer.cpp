@@ -55,7 +55,9 @@ ContentWriter::~ContentWriter() {
   store_->expected_ -= size_ - offset_;
   // Nobody would find a copy with a name of its own again, nor look for what is whole by now.
   const bool useless = file_.valid() && (!resumable_ || !store_->missing(name_));
-  if (useless && still_named(file_.get(), path_)) ::unlink(path_.c_str());
+  const bool named = file_.valid() && still_named(file_.get(), path_);
+  if (useless && named) ::unlink(path_.c_str());
+  if (!useless && named) store_->keep(*this);
   stop_counting();
 }
 
@@ -88,13 +90,17 @@ Status ContentWriter::take_partial(const std::string& begun) {
   return Error{"cannot write " + begun + ": too many write it at once"};
 }
 
-Status ContentWriter::read_partial() {
+Status ContentWriter::read_partial(bool* busy) {
   struct stat info {};
   if (::fstat(file_.get(), &info) != 0) return write_failure(path_, errno);
   if (static_cast<uint64_t>(info.st_size) > size_) {
     if (::ftruncate(file_.get(), 0) != 0) return write_failure(path_, errno);
     return {};
   }
+  const auto unread = static_cast<uint64_t>(info.st_size) - offset_;
+  if (unread == 0) return {};
+  const ContentStore::Hashing turn(*store_, path_, unread, busy);
+  if (!turn.begun()) return Error{path_ + ": what there is of it is still being checked"};
   std::vector<std::byte> piece(kReadPiece);
   while (true) {
     const auto got = core::read_all_at(file_.get(), piece, offset_);

@@ -42,8 +42,8 @@ class ContentWriter {
 
   /// Takes hold of the unfinished file `begun`, or, where someone else writes to it, of a new one.
   core::Status take_partial(const std::string& begun);
-  /// Reads what it has.
-  core::Status read_partial();
+  /// Reads what it has and does not know; `busy` as for ContentStore::read().
+  core::Status read_partial(bool* busy);
   /// The unfinished file is not written any more.
   void stop_counting();
 

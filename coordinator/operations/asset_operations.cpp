@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "coordinator/controller/controller.h"
+#include "coordinator/operations/file_transfer.h"
 #include "coordinator/operations/operation.h"
 #include "hyades/v1/assets.pb.h"
 
@@ -32,10 +33,12 @@ grpc::Status find_missing(Backend& at, const v1::FindMissingRequest& request,
     if (!digest) return {grpc::StatusCode::INVALID_ARGUMENT, digest.error().message};
     const std::string name = core::to_hex(*digest);
     if (!seen.insert(name).second) continue;
-    if (store.contains(name, file.size())) {
+    bool busy = false;
+    if (store.contains(name, file.size(), &busy)) {
       store.touch(name);  // a job will need it
       continue;
     }
+    if (busy) return still_checked();
     auto* missing = response.add_missing();
     missing->set_sha256(file.sha256());
     missing->set_offset(std::min(store.begun(name, caller.name), file.size()));

@@ -25,7 +25,9 @@ grpc::Status begin_upload(Controller& controller, AuditLog* log, const Caller& c
                           const std::string& name, uint64_t size,
                           std::unique_ptr<farm::ContentWriter>& writer) {
   farm::ContentStore& assets = controller.assets();
-  if (assets.contains(name, size)) return grpc::Status::OK;
+  bool busy = false;
+  if (assets.contains(name, size, &busy)) return grpc::Status::OK;
+  if (busy) return still_checked();
   const uint64_t begun = std::min(assets.begun(name, caller.name), size);
   if (grpc::Status room = controller.disk().admit(size - begun); !room.ok()) return room;
   grpc::Status over_quota;
@@ -35,7 +37,8 @@ grpc::Status begin_upload(Controller& controller, AuditLog* log, const Caller& c
     if (over_quota.ok()) return {};
     return core::Error{over_quota.error_message()};
   };
-  auto opened = assets.write(name, size, {caller.name, may_begin});
+  auto opened = assets.write(name, size, {caller.name, may_begin, &busy});
+  if (busy) return still_checked();
   if (!opened) return over_quota.ok() ? no_room_for(opened.error()) : over_quota;
   writer = std::make_unique<farm::ContentWriter>(std::move(*opened));
   if (log == nullptr) return grpc::Status::OK;
@@ -44,6 +47,12 @@ grpc::Status begin_upload(Controller& controller, AuditLog* log, const Caller& c
               there == 0 ? fmt::format("{} bytes", size)
                          : fmt::format("{} bytes, goes on from {}", size, there));
   return grpc::Status::OK;
+}
+
+grpc::Status still_checked() {
+  return farm::retry_later(grpc::StatusCode::UNAVAILABLE,
+                           "the file is still being checked on the coordinator's disk",
+                           std::chrono::seconds(1));
 }
 
 grpc::Status take_piece(Controller& controller, const Caller& caller, farm::ContentWriter& writer,

@@ -143,7 +143,9 @@ void add_asset_streams(Service& service) {
         }
         const auto open = [&controller,
                            name = core::to_hex(*digest)](core::Bytes& file) -> grpc::Status {
-          auto bytes = controller.assets().read(name);
+          bool busy = false;
+          auto bytes = controller.assets().read(name, &busy);
+          if (busy) return still_checked();
           if (!bytes) return {grpc::StatusCode::NOT_FOUND, bytes.error().message};
           file = std::move(*bytes);
           return grpc::Status::OK;

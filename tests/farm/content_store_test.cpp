@@ -5,7 +5,9 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <atomic>
 #include <chrono>
+#include <cstdint>
 #include <filesystem>
 #include <fstream>
 #include <string>
@@ -47,6 +49,93 @@ TEST(ContentStore, KeepsFilesByContent) {
   EXPECT_FALSE(store->contains(name, 4));
   EXPECT_EQ(text_of(bytes), "mesh");  // what was read stays
   EXPECT_TRUE(fs::is_empty(folder.file("assets/partial")));
+}
+
+/// That this process has read of files so far.
+uint64_t bytes_read() {
+  std::ifstream io("/proc/self/io");
+  std::string name;
+  uint64_t bytes = 0;
+  io >> name >> bytes;
+  EXPECT_EQ(name, "rchar:");
+  return bytes;
+}
+
+TEST(ContentStore, GoesOnWithAFileWithoutReadingItAgain) {
+  constexpr uint64_t kPart = uint64_t{8} << 20U;
+  const TempFolder folder;
+  const std::string text(2 * kPart, 'x');
+  const std::string name = name_of(text);
+  const auto part = [&](size_t i) { return bytes_of(text).subspan(i * kPart, kPart); };
+  auto store = open_store(folder.file("assets"));
+  const auto read_to_go_on = [&] {
+    const uint64_t before = bytes_read();
+    auto writer = store->write(name, text.size());
+    EXPECT_TRUE(writer) << error_of(writer);
+    EXPECT_EQ(writer->offset(), kPart);
+    EXPECT_EQ(store->expected(), kPart);
+    return bytes_read() - before;
+  };
+  ASSERT_TRUE(store->write(name, text.size())->append(part(0)));
+  for (int i = 0; i < 3; ++i) EXPECT_LT(read_to_go_on(), kPart / 2);
+  store = open_store(folder.file("assets"));
+  EXPECT_GE(read_to_go_on(), kPart) << "once after a start";
+  EXPECT_LT(read_to_go_on(), kPart / 2);
+  // Somebody else has changed it.
+  const std::string partial = folder.file("assets/partial/" + name);
+  {
+    std::fstream file(partial, std::ios::in | std::ios::out);
+    file.seekp(100);
+    file << 'y';
+  }
+  EXPECT_GE(read_to_go_on(), kPart);
+  {
+    auto writer = store->write(name, text.size());
+    ASSERT_TRUE(writer->append(part(1)));
+    EXPECT_FALSE(writer->commit()) << "it is not what the name promises";
+  }
+  ASSERT_TRUE(store->write(name, text.size())->append(part(0)));
+  auto writer = store->write(name, text.size());
+  ASSERT_EQ(writer->offset(), kPart);
+  ASSERT_TRUE(writer->append(part(1)));
+  const core::Status whole = writer->commit();
+  EXPECT_TRUE(whole) << error_of(whole);
+}
+
+/// How many of eight that want these files (each one's, or all one) are told to come again.
+int told_to_come_again(ContentStore& store, const std::vector<std::string>& names) {
+  constexpr size_t kAtOnce = 8;
+  std::atomic<size_t> here{0};
+  std::atomic<int> told{0};
+  std::vector<std::thread> threads;
+  for (size_t i = 0; i < kAtOnce; ++i) {
+    threads.emplace_back([&, i] {
+      ++here;
+      while (here < kAtOnce) std::this_thread::yield();
+      bool busy = false;
+      EXPECT_FALSE(store.read(names[i % names.size()], &busy));
+      told += busy ? 1 : 0;
+    });
+  }
+  for (std::thread& thread : threads) thread.join();
+  return told;
+}
+
+TEST(ContentStore, ALargeFileThatAllWantTakesOneThread) {
+  const TempFolder folder;
+  const auto store = open_store(folder.file("assets"));
+  std::vector<std::string> names;
+  // Not what their names promise, and long enough that all come while they are hashed.
+  for (int i = 0; i < 8; ++i) {
+    names.push_back(name_of(std::to_string(i)));
+    const std::string path = folder.file("assets/" + names.back());
+    std::ofstream(path).close();
+    fs::resize_file(path, uint64_t{256} << 20U);
+  }
+  EXPECT_GE(told_to_come_again(*store, {names[0]}), 4);
+  EXPECT_GE(told_to_come_again(*store, names), 2) << "some threads are left for others";
+  for (const std::string& name : names) EXPECT_FALSE(store->read(name)) << "who waits is told";
+  EXPECT_TRUE(store->names().empty());
 }
 
 TEST(ContentStore, WhatIsGoneTakesNoMemory) {

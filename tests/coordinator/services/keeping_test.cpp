@@ -253,6 +253,34 @@ TEST(Keeping, ManyUnusedFilesGoInTurnsWithSubmissions) {
   EXPECT_GE(trouble->looks(), 5);
 }
 
+TEST(Keeping, ALargeFileIsCheckedByOneThreadForAllWhoFetchIt) {
+  FarmWorld world;
+  const std::string name = core::to_hex(core::sha256("something else"));
+  std::filesystem::create_directories(world.options.folder + "/assets");
+  std::ofstream(world.options.folder + "/assets/" + name).close();
+  std::filesystem::resize_file(world.options.folder + "/assets/" + name, uint64_t{512} << 20U);
+  world.start();
+  std::atomic<int> told{0};
+  std::vector<std::thread> workers;
+  for (int i = 0; i < 8; ++i) {
+    workers.emplace_back([&] {
+      v1::DownloadRequest request;
+      request.set_sha256(farm::to_wire(core::sha256("something else")));
+      const auto context = world.context();
+      const auto reader = world.assets->Download(context.get(), request);
+      v1::Chunk chunk;
+      EXPECT_FALSE(reader->Read(&chunk));
+      const grpc::Status status = reader->Finish();
+      if (status.error_code() == grpc::StatusCode::NOT_FOUND) return;
+      EXPECT_EQ(status.error_code(), grpc::StatusCode::UNAVAILABLE) << status.error_message();
+      EXPECT_GT(farm::detail_of(status).retry_after_ms(), 0U);
+      ++told;
+    });
+  }
+  for (std::thread& worker : workers) worker.join();
+  EXPECT_GE(told, 4);
+}
+
 TEST(Keeping, FoldersGoInPiecesAndTheirLinksAlone) {
   const test::TempFolder folder;
   const std::string job = folder.file("job");
