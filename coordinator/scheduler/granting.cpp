@@ -55,7 +55,7 @@ void Granting::on(const WorkRequested& e) {
   const uint64_t room = kMostInHand - std::min(worker->units, kMostInHand);
   const uint64_t wish = std::min({uint64_t{worker->wanted} + e.units, most, room});
   worker->wanted = static_cast<uint32_t>(wish);
-  if (may_lease()) serve(e.worker, *worker, true);
+  if (may_lease()) serve(e.worker, *worker, true, true);
   workers_.update_waiting(e.worker, *worker);
 }
 
@@ -76,13 +76,13 @@ void Granting::on(const Tick&) {
   make_room();
 }
 
-void Granting::serve(WorkerId id, Worker& worker, bool copies) {
+void Granting::serve(WorkerId id, Worker& worker, bool units, bool copies) {
   if (worker.barred || worker.wanted == 0) return;
   if (workers_.rests(id)) {
     turned_away_ = true;
     return;
   }
-  while (worker.wanted > 0 && grant(id, worker)) {
+  while (units && worker.wanted > 0 && grant(id, worker)) {
   }
   while (copies && worker.wanted > 0 && copies_.grant(id, worker)) {
   }
@@ -92,17 +92,33 @@ void Granting::dispatch() {
   if (!may_lease()) return;
   if (films_.refused() && !next_room_) next_room_ = step_.now;
   const bool copies = copies_.begin_round();
-  if (!copies && !step_.work_appeared) return;
-  step_.work_appeared = false;
-  for (auto it = workers_.waiting().begin(); it != workers_.waiting().end();) {
-    const bool due = copies && copies_.due();
-    if (jobs_.ready_shares().empty() && !due) return;
-    const WorkerId id = it->second;
-    Worker& worker = *workers_.find(id);
-    ++it;
-    serve(id, worker, due);
-    workers_.update_waiting(id, worker);
+  if (std::exchange(step_.work_appeared, false)) {
+    for (auto it = workers_.waiting().begin(); it != workers_.waiting().end();) {
+      if (jobs_.ready_shares().empty()) break;
+      serve_waiting((it++)->second, false);
+    }
   }
+  if (copies) offer_copies();
+}
+
+/// Offers copies to those who wait, beginning behind whom the last round came to: where very many
+/// units are late a round does not come to all.
+void Granting::offer_copies() {
+  const std::map<uint64_t, WorkerId>& waiting = workers_.waiting();
+  std::vector<std::pair<uint64_t, WorkerId>> turns(waiting.upper_bound(last_offered_),
+                                                   waiting.end());
+  turns.insert(turns.end(), waiting.begin(), waiting.upper_bound(last_offered_));
+  for (const auto& [place, id] : turns) {
+    if (!copies_.due()) return;
+    last_offered_ = place;
+    serve_waiting(id, true);
+  }
+}
+
+void Granting::serve_waiting(WorkerId id, bool copies) {
+  Worker& worker = *workers_.find(id);
+  serve(id, worker, !copies, copies);
+  workers_.update_waiting(id, worker);
 }
 
 std::optional<TimePoint> Granting::next_wake() const {

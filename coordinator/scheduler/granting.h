@@ -49,7 +49,9 @@ class Granting {
     yes,
   };
 
-  void serve(WorkerId id, Worker& worker, bool copies);
+  void serve(WorkerId id, Worker& worker, bool units, bool copies);
+  void serve_waiting(WorkerId id, bool copies);
+  void offer_copies();
   bool grant(WorkerId id, Worker& worker);
   bool grant_from(const FramePlace& place, WorkerId id, Worker& worker, bool ahead);
   bool grant_check(const FramePlace& place, WorkerId id, Worker& worker, const MayTry& may_try);
@@ -78,7 +80,8 @@ class Granting {
   Affinity& affinity_;
   HedgedCopies& copies_;
   FrameLifecycle& frames_;
-  bool held_ = false;  ///< LeasingHeld
+  bool held_ = false;          ///< LeasingHeld
+  uint64_t last_offered_ = 0;  ///< the place of whoever was offered copies last
   /// When it is looked at next which films can be set aside; nothing while none has to.
   std::optional<TimePoint> next_room_;
   bool crammed_ = false;  ///< films have no room, and none of those that are there can be set aside

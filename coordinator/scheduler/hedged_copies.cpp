@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <iterator>
 #include <vector>
 
 namespace hyades::coordinator {
@@ -14,6 +13,8 @@ constexpr size_t kCopySearch = 64;
 /// for another, on a slow machine), and a little for the way there and back.
 constexpr double kLate = 3;
 constexpr Duration kWay = std::chrono::seconds(1);
+/// Of how many jobs a worker is offered units at a time.
+constexpr size_t kGroupsOffered = 64;
 /// How often the waiting workers are offered copies.
 constexpr Duration kCopyRound = std::chrono::milliseconds(250);
 
@@ -32,23 +33,15 @@ bool HedgedCopies::grant(WorkerId id, Worker& worker) {
 /// Those that the worker may have copies of, whoever has waited longest first.
 std::vector<HedgedCopies::Units*> HedgedCopies::for_worker(WorkerId id, const Worker& worker) {
   std::vector<Units*> found;
-  for (auto it = out_.lower_bound({worker.worker_class, JobId{}});
-       it != out_.end() && it->first.worker_class == worker.worker_class;) {
-    Units& units = it->second;
-    forget_over(units);
-    if (units.empty()) {
-      it = out_.erase(it);
-      continue;
-    }
-    const ScheduledJob& job = *jobs_.find(it->first.job);
-    if (!job.paused && ScheduledWorkers::may_join(job, id, worker)) found.push_back(&units);
-    ++it;
+  const auto late = late_.find(worker.worker_class);
+  if (late == late_.end()) return found;
+  for (const auto& [number, units] : late->second) {
+    if (found.size() == kGroupsOffered || ++looks_ > kLooks) break;
+    const ScheduledJob* job = jobs_.find(number);  // it may have ended
+    if (job == nullptr || job->paused || !ScheduledWorkers::may_join(*job, id, worker)) continue;
+    forget_over(*units);
+    if (!units->empty()) found.push_back(units);
   }
-  const auto oldest = [](const Units* units) {
-    return units->alone.empty() ? TimePoint::max() : units->alone.front().since;
-  };
-  std::stable_sort(found.begin(), found.end(),
-                   [&](const Units* a, const Units* b) { return oldest(a) < oldest(b); });
   return found;
 }
 
@@ -108,6 +101,7 @@ bool HedgedCopies::grant_of(Units& units, size_t holders, WorkerId id, Worker& w
     if (holders == 1) {
       units.copied.push_back(
           {step_.now, candidate.serial, candidate.job, candidate.slot, candidate.extent});
+      may_be_late(units.copied.back());
     }
     return true;
   }
@@ -139,39 +133,50 @@ void HedgedCopies::note(const FramePlace& place, const Assignment& assignment,
   }
   units.alone.push_back(
       {assignment.since, assignment.serial, place.job->id, place.slot, assignment.extent});
+  may_be_late(units.alone.back());
 }
 
-bool HedgedCopies::due() const {
-  const std::optional<TimePoint> first = first_of_all();
-  return first && *first <= step_.now;
+/// Some unit may be late from some time on.
+void HedgedCopies::may_be_late(const Candidate& candidate) {
+  const TimePoint copy = first_copy(candidate);
+  first_ = first_ ? std::min(*first_, copy) : copy;
 }
 
 bool HedgedCopies::begin_round() {
   if (!enabled() || step_.now < next_round_) return false;
   next_round_ = step_.now + kCopyRound;
+  late_.clear();
+  looks_ = 0;
+  first_.reset();
   for (auto it = out_.begin(); it != out_.end();) {
-    forget_over(it->second);
-    it = it->second.empty() ? out_.erase(it) : std::next(it);
+    Units& units = it->second;
+    forget_over(units);
+    if (units.empty()) {
+      it = out_.erase(it);
+      continue;
+    }
+    bool late = false;
+    for (const Candidates* candidates : {&units.alone, &units.copied}) {
+      if (candidates->empty()) continue;
+      may_be_late(candidates->front());
+      late = late || first_copy(candidates->front()) <= step_.now;
+    }
+    if (late) late_[it->first.worker_class].emplace_back(it->first.job, &units);
+    ++it;
+  }
+  const auto oldest = [](const Units* units) {
+    return units->alone.empty() ? TimePoint::max() : units->alone.front().since;
+  };
+  for (auto& [worker_class, groups] : late_) {
+    std::stable_sort(groups.begin(), groups.end(), [&](const auto& a, const auto& b) {
+      return oldest(a.second) < oldest(b.second);
+    });
   }
   return true;
 }
 
-/// When the oldest unit may be late.
-std::optional<TimePoint> HedgedCopies::first_of_all() const {
-  std::optional<TimePoint> first;
-  for (const auto& [group, units] : out_) {
-    for (const Candidates* candidates : {&units.alone, &units.copied}) {
-      if (candidates->empty()) continue;
-      const TimePoint copy = first_copy(candidates->front());
-      first = first ? std::min(*first, copy) : copy;
-    }
-  }
-  return first;
-}
-
 std::optional<TimePoint> HedgedCopies::next_wake() const {
-  const std::optional<TimePoint> first = first_of_all();
-  return first ? std::optional(std::max(*first, next_round_)) : std::nullopt;
+  return first_ ? std::optional(std::max(*first_, next_round_)) : std::nullopt;
 }
 
 /// Who has the unit, or null where that is over.

@@ -6,6 +6,7 @@
 #include <deque>
 #include <map>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "coordinator/scheduler/affinity.h"
@@ -32,8 +33,9 @@ class HedgedCopies {
   void note(const FramePlace& place, const Assignment& assignment, ClassId worker_class);
   /// Hands out a copy of one of the oldest units that are late.
   bool grant(WorkerId id, Worker& worker);
-  /// Whether some unit may be due for a copy.
-  bool due() const;
+  /// Whether some unit may be due for a copy, and as much was not looked at in this round as may
+  /// be.
+  bool due() const { return !late_.empty() && looks_ < kLooks; }
   /// Whether it is time to offer copies to those who wait; begins the next round.
   bool begin_round();
   /// When copies may be offered next; nothing where no unit is out.
@@ -65,11 +67,14 @@ class HedgedCopies {
     bool empty() const { return alone.empty() && copied.empty(); }
   };
 
+  /// How many groups are looked at in a round, for all workers together.
+  static constexpr size_t kLooks = 20'000;
+
   void forget_over(Units& units) const;
   std::vector<Units*> for_worker(WorkerId id, const Worker& worker);
   bool grant_of(Units& units, size_t holders, WorkerId id, Worker& worker);
   bool may_copy(const Assignment& assignment, WorkerId id, const Worker& worker) const;
-  std::optional<TimePoint> first_of_all() const;
+  void may_be_late(const Candidate& candidate);
   TimePoint first_copy(const Candidate& candidate) const;
   double late_after(const ScheduledJob& job, const Extent& extent) const;
   Assignment* find(const Candidate& candidate) const;
@@ -82,6 +87,11 @@ class HedgedCopies {
   Affinity& affinity_;
   std::map<Group, Units> out_;
   TimePoint next_round_;
+  /// Of this round, by class, the groups of which some unit may be late; whoever has waited longest
+  /// first.
+  std::map<ClassId, std::vector<std::pair<JobId, Units*>>> late_;
+  size_t looks_ = 0;                ///< at groups, in this round
+  std::optional<TimePoint> first_;  ///< when some unit may be late, at the earliest
 };
 
 }  // namespace hyades::coordinator

@@ -3,7 +3,7 @@
 #include <ctime>
 
 #include "coordinator/scheduler/frame_ledger.h"
-#include "tests/coordinator/scheduler/scheduler_testing.h"
+#include "tests/coordinator/scheduler/conflicts_testing.h"
 
 namespace hyades::coordinator {
 namespace {
@@ -93,6 +93,54 @@ TEST(Attacks, NobodyHasMoreUnitsThanHeMayBringAlong) {
   EXPECT_EQ(b.scheduler.leased_units(kAnna), 20'000U);
   b.tell(WorkerLost{kAnna});
   EXPECT_EQ(b.scheduler.leased_units(kJob), 0U);
+}
+
+/// So many jobs, each with a late unit, of a worker that has a tag that others have not; and so
+/// many workers that wait.
+void begin_late_units(SchedulerBench& b, uint64_t jobs, uint64_t workers) {
+  const WorkerId hoarder{100'000};
+  b.scheduler.handle(WorkerJoined{hoarder, 4096, "class", {}, {"x"}}, b.now);
+  for (uint64_t job = 1; job <= jobs; ++job) {
+    JobPlan plan = small_plan({1}, 1);
+    plan.region = {0, 0, 32, 32};
+    plan.needs.tags = {"x"};
+    b.scheduler.handle(JobAdded{JobId{job}, plan, {}}, b.now);
+    b.scheduler.handle(FrameOpened{JobId{job}, 1}, b.now);
+    b.scheduler.handle(WorkRequested{hoarder, 1}, b.now);
+  }
+  ASSERT_EQ(b.scheduler.leased_units(hoarder), jobs);
+  for (uint64_t i = 1; i <= workers; ++i) {
+    b.scheduler.handle(WorkerJoined{WorkerId{i}, 1, "class", {}}, b.now);
+    b.scheduler.handle(WorkRequested{WorkerId{i}, 1}, b.now);
+  }
+}
+
+// Each of the workers that wait looked at each of the jobs, four times a second.
+TEST(Attacks, LateUnitsOfManyJobsCostNoMoreForManyWhoWait) {
+  SchedulerBench b;
+  begin_late_units(b, 2000, 3000);
+  b.now += std::chrono::seconds(10);
+  const double begin = cpu_seconds();
+  for (int round = 0; round < 40; ++round) {
+    b.now += std::chrono::milliseconds(250);
+    b.scheduler.handle(Tick{}, b.now);
+  }
+  EXPECT_LT(cpu_seconds() - begin, 5.0) << "some hundredths of a second; it would take a minute";
+}
+
+TEST(Attacks, WhoMayCopyIsAskedThoughManyWaitBeforeHimWhoMayNot) {
+  SchedulerBench b;
+  begin_late_units(b, 1000, 500);
+  const WorkerId carl{200'000};
+  b.scheduler.handle(WorkerJoined{carl, 1, "class", {}, {"x"}}, b.now);
+  b.scheduler.handle(WorkRequested{carl, 1}, b.now);
+  b.now += std::chrono::seconds(10);
+  int rounds = 0;
+  while (b.scheduler.leased_units(carl) == 0 && ++rounds < 100) {
+    b.now += std::chrono::milliseconds(250);
+    b.scheduler.handle(Tick{}, b.now);
+  }
+  EXPECT_EQ(b.scheduler.leased_units(carl), 1U);
 }
 
 }  // namespace
