@@ -1,6 +1,7 @@
 #include "coordinator/scheduler/conflicts.h"
 
 #include <algorithm>
+#include <chrono>
 #include <cstddef>
 #include <string>
 #include <utility>
@@ -14,6 +15,10 @@ namespace {
 
 /// With so many different answers it is not the machines: the unit is no pure function.
 constexpr size_t kMostAnswers = 5;
+
+/// Where it took a look at more jobs and frames than that, the next one is not with the next event.
+constexpr size_t kManyFrames = 1000;
+constexpr Duration kRest = std::chrono::milliseconds(100);
 
 /// How many voices there are among those opinions that `counts`.
 template <class Counts>
@@ -217,19 +222,28 @@ bool Conflicts::has_dispute(const ScheduledJob& job) {
 }
 
 /// Whether films are to be void, in whatever job, and that is not durable yet.
-bool Conflicts::any_suspect() const {
-  return std::any_of(jobs_.all().begin(), jobs_.all().end(), [](const auto& entry) {
+bool Conflicts::any_suspect() {
+  size_t looked = 0;
+  const bool any = std::any_of(jobs_.all().begin(), jobs_.all().end(), [&](const auto& entry) {
     const ScheduledJob& job = *entry.second;
+    looked += 1 + job.in_flight.size();
     return std::any_of(job.in_flight.begin(), job.in_flight.end(), [&](uint32_t i) {
       const FrameSlot& slot = job.slots[i];
       // Without a ledger it fails or begins again, and its films with it.
       return slot.ledger ? slot.ledger->any_suspect() || job.begins_again(slot) : slot.in_flight();
     });
   });
+  if (looked > kManyFrames) next_look_ = step_.now + kRest;
+  return any;
+}
+
+std::optional<TimePoint> Conflicts::next_wake() const {
+  return marked_.empty() || step_.now >= next_look_ ? std::nullopt : std::optional(next_look_);
 }
 
 void Conflicts::end_marks() {
   if (divergent_records_ > 0) return;
+  if (marked_.empty() || step_.now < next_look_) return;
   std::erase_if(marked_, [this](JobId id) { return jobs_.find(id) == nullptr; });
   if (marked_.empty() || any_suspect()) return;
   for (const JobId id : marked_) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <set>
 
 #include "coordinator/scheduler/frame_lifecycle.h"
@@ -39,6 +40,8 @@ class Conflicts {
   /// Whether a record that could not be made durable is worth another try. Not one that voids a
   /// tile whose frame has begun again since: the films that it has now are new.
   bool still_wanted(const Record& record) const;
+  /// When end_marks() may have something to do next.
+  std::optional<TimePoint> next_wake() const;
   /// Where a job's disputes are over, and all that followed from them, its log is told that its
   /// films are right.
   void end_marks();
@@ -52,7 +55,7 @@ class Conflicts {
   void suspect_frame(ScheduledJob& job, FrameSlot& slot);
   void mark_disputed(ScheduledJob& job);
   static bool has_dispute(const ScheduledJob& job);
-  bool any_suspect() const;
+  bool any_suspect();
 
   Step& step_;
   ScheduledJobs& jobs_;
@@ -62,6 +65,7 @@ class Conflicts {
   WorkerLifecycle& workers_;
   std::set<JobId> marked_;          ///< jobs with a mark of a dispute; some may have ended
   uint32_t divergent_records_ = 0;  ///< DivergentWorkerRecords that are not durable yet
+  TimePoint next_look_;             ///< of end_marks()
   bool distrust_restored_ = false;  ///< a dispute was open before the restart
 };
 

@@ -108,6 +108,7 @@ std::optional<TimePoint> Scheduler::next_wake() const {
   at(parts_->leases.next_deadline());
   at(parts_->records.next_wake());
   at(parts_->frames.next_wake());
+  at(parts_->conflicts.next_wake());
   at(parts_->granting.next_wake());
   return wake;
 }

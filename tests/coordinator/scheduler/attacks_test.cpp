@@ -143,5 +143,26 @@ TEST(Attacks, WhoMayCopyIsAskedThoughManyWaitBeforeHimWhoMayNot) {
   EXPECT_EQ(b.scheduler.leased_units(carl), 1U);
 }
 
+// While a dispute was open all frames of all jobs were looked at with each event.
+TEST_F(Conflicts, ThatAreOpenCostNoMoreForManyJobs) {
+  deliver_durably(b.ask(kAnna), 1);
+  for (uint64_t job = 2; job <= 30'000; ++job) {
+    b.scheduler.handle(JobAdded{JobId{job}, small_plan(), {}}, b.now);
+    b.scheduler.handle(FrameOpened{JobId{job}, 1}, b.now);
+  }
+  const double begin = cpu_seconds();
+  for (int i = 0; i < 50'000; ++i) b.scheduler.handle(WorkerAlive{kAnna, {}}, b.now);
+  EXPECT_LT(cpu_seconds() - begin, 3.0) << "some hundredths of a second; it would take a minute";
+  // It ends all the same.
+  b.join(kCora);
+  b.deliver(b.ask(kCora), 0, 1);
+  EXPECT_EQ(b.only<Quarantine>().worker, kBert);
+  b.scheduler.handle(Persisted{b.only<Persist>().id}, b.now);
+  ASSERT_TRUE(b.scheduler.next_wake());
+  b.now += std::chrono::milliseconds(100);
+  b.tell(Tick{});
+  EXPECT_FALSE(std::get<DisputeRecord>(b.only<Persist>().record).open);
+}
+
 }  // namespace
 }  // namespace hyades::coordinator
