@@ -46,6 +46,40 @@ auto judge_of(const ScheduledWorkers& workers, const ScheduledJob& job, WorkerId
   };
 }
 
+/// The jobs of a share that have work and ask for no more than the worker has, oldest first. Those
+/// that ask for the same are looked at together: many may ask for what the worker has not.
+class ReadyJobs {
+ public:
+  ReadyJobs(const FairShare& share, const Worker& worker) {
+    for (const auto& [serial, alike] : share.ready) {
+      if (!alike.group->needs.are_met(worker.tags, worker.memory)) continue;
+      rest_.emplace_back(alike.jobs.begin(), alike.jobs.end());
+    }
+    std::make_heap(rest_.begin(), rest_.end(), is_younger);
+  }
+
+  /// The next one; null where there is none.
+  ScheduledJob* next() {
+    if (rest_.empty()) return nullptr;
+    std::pop_heap(rest_.begin(), rest_.end(), is_younger);
+    Rest& oldest = rest_.back();
+    ScheduledJob* job = oldest.first->second;
+    if (++oldest.first == oldest.second) {
+      rest_.pop_back();
+    } else {
+      std::push_heap(rest_.begin(), rest_.end(), is_younger);
+    }
+    return job;
+  }
+
+ private:
+  using Place = std::map<uint64_t, ScheduledJob*>::const_iterator;
+  using Rest = std::pair<Place, Place>;
+  static bool is_younger(const Rest& a, const Rest& b) { return a.first->first > b.first->first; }
+
+  std::vector<Rest> rest_;
+};
+
 }  // namespace
 
 void Granting::on(const WorkRequested& e) {
@@ -71,9 +105,14 @@ void Granting::on(const FrameWatched& e) {
 }
 
 void Granting::on(const Tick&) {
-  if (step_.now >= records_.blocked_until()) step_.work_appeared = true;
-  turned_away_ = false;
   make_room();
+  // Time alone changes little, and all who wait look at what there is.
+  const bool was_blocked = records_.blocked_until() > served_;
+  if (step_.now < records_.blocked_until()) return;
+  if (!was_blocked && step_.now - served_ < kLookAgain) return;
+  step_.work_appeared = true;
+  turned_away_ = false;
+  served_ = step_.now;
 }
 
 void Granting::serve(WorkerId id, Worker& worker, bool units, bool copies) {
@@ -123,7 +162,7 @@ void Granting::serve_waiting(WorkerId id, bool copies) {
 
 std::optional<TimePoint> Granting::next_wake() const {
   std::optional<TimePoint> wake;
-  if (turned_away_) wake = step_.now + kLookAgain;
+  if (turned_away_) wake = served_ + kLookAgain;
   if (next_room_) wake = wake ? std::min(*wake, *next_room_) : next_room_;
   if (held_ || workers_.waiting().empty()) return wake;
   const std::optional<TimePoint> copies = copies_.next_wake();
@@ -173,7 +212,8 @@ std::optional<FramePlace> Granting::next_of(const FairShare& share, WorkerId id,
   double most = -1;
   size_t looked = 0;
   bool own = begun;
-  for (const auto& [serial, job] : share.ready) {
+  ReadyJobs ready(share, worker);
+  while (ScheduledJob* job = ready.next()) {
     if (!ScheduledWorkers::may_join(*job, id, worker)) continue;
     if (job->plan.order == FrameOrder::progressive) {
       const auto slot = find_pass(*job, id, worker, begun);

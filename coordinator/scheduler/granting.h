@@ -81,6 +81,7 @@ class Granting {
   HedgedCopies& copies_;
   FrameLifecycle& frames_;
   bool held_ = false;          ///< LeasingHeld
+  TimePoint served_;           ///< when those who wait were served last because time had passed
   uint64_t last_offered_ = 0;  ///< the place of whoever was offered copies last
   /// When it is looked at next which films can be set aside; nothing while none has to.
   std::optional<TimePoint> next_room_;

@@ -9,8 +9,9 @@ namespace hyades::coordinator {
 
 void JobLifecycle::on(const JobAdded& e) {
   if (jobs_.find(e.job) != nullptr) return;
-  ScheduledJob& job = jobs_.add(e.job, e.plan);
-  job.tags = tag_ids(e.plan.needs.tags);
+  const Needs asked{tag_ids(e.plan.needs.tags), e.plan.needs.memory};
+  ScheduledJob& job =
+      jobs_.add(e.job, e.plan, asked, [this](const Needs& needs) { return workers_.count(needs); });
   restore(job, e.restored);
   job.waiting = static_cast<uint64_t>(
       std::count_if(job.slots.begin(), job.slots.end(),

@@ -96,6 +96,25 @@ enum class DisputeMark : uint8_t {
 };
 
 struct FairShare;
+struct ScheduledJob;
+
+/// What a job asks of workers.
+struct Needs {
+  std::vector<TagId> tags;  ///< all of them; sorted
+  uint64_t memory = 0;      ///< 0: any
+  auto operator<=>(const Needs&) const = default;
+
+  /// Whether a worker has that; of memory 0: it knows no limit.
+  bool are_met(const std::vector<TagId>& has, uint64_t has_memory) const;
+};
+
+/// Jobs that ask the same of workers, and how many workers have that.
+struct NeedsGroup {
+  uint64_t serial = 0;
+  Needs needs;
+  std::map<JobId, ScheduledJob*> jobs;
+  uint64_t workers = 0;
+};
 
 /// A job that has not ended: its plan, its frames, and what their rendering has shown so far.
 struct ScheduledJob {
@@ -103,7 +122,7 @@ struct ScheduledJob {
   uint64_t serial = 0;         ///< order of arrival
   FairShare* share = nullptr;  ///< of its owner at its priority
   JobPlan plan;
-  std::vector<TagId> tags;  ///< that a worker needs; sorted
+  NeedsGroup* group = nullptr;  ///< with those that ask the same of workers
   TileGrid grid;
   std::vector<FrameSlot> slots;                     ///< in the order of plan.frames
   std::unordered_map<int32_t, uint32_t> by_number;  ///< frame number -> slot; never walked
@@ -113,7 +132,7 @@ struct ScheduledJob {
   uint64_t running = 0;                             ///< leased units
   std::map<WorkerId, uint32_t> workers;             ///< how many leases each has
   bool paused = false;
-  bool ready = false;  ///< listed among those that have work
+  bool ready = false;  ///< listed among those that have work for some worker
   uint64_t offer = 0;  ///< free batches and disputed units when it was last looked at
 
   /// Of failed frames that begin again some at a time: the slot from which on they are looked for;

@@ -1,5 +1,7 @@
 #include "coordinator/scheduler/scheduled_jobs.h"
 
+#include <algorithm>
+
 namespace hyades::coordinator {
 namespace {
 
@@ -8,6 +10,11 @@ ScheduledJobs::ShareOrder order_of(const FairShare& share) {
 }
 
 }  // namespace
+
+bool Needs::are_met(const std::vector<TagId>& has, uint64_t has_memory) const {
+  return (memory == 0 || has_memory == 0 || has_memory >= memory) &&
+         std::includes(has.begin(), has.end(), tags.begin(), tags.end());
+}
 
 ScheduledJob* ScheduledJobs::find(JobId id) const {
   const auto it = jobs_.find(id);
@@ -20,11 +27,20 @@ FoundFrame ScheduledJobs::find_frame(const FrameId& id) const {
   return slot ? FoundFrame{job, slot} : FoundFrame{};
 }
 
-ScheduledJob& ScheduledJobs::add(JobId id, const JobPlan& plan) {
+ScheduledJob& ScheduledJobs::add(JobId id, const JobPlan& plan, const Needs& needs,
+                                 const std::function<uint64_t(const Needs&)>& count) {
   ScheduledJob& job = *jobs_.emplace(id, std::make_unique<ScheduledJob>()).first->second;
   job.id = id;
   job.serial = next_serial_++;
   job.plan = plan;
+  const auto [group, fresh] = needs_.try_emplace(needs);
+  job.group = &group->second;
+  job.group->jobs.emplace(id, &job);
+  if (fresh) {
+    job.group->serial = next_group_++;
+    job.group->needs = needs;
+    job.group->workers = count(needs);
+  }
   join_share(job);
   job.grid = TileGrid(plan.region, plan.tile_size, plan.shuffle);
   job.tile_cost.assign(job.grid.size(), 0.0F);
@@ -39,6 +55,8 @@ void ScheduledJobs::end(ScheduledJob& job, bool cancelled) {
   update_offer(job);
   step_.say(JobEnded{job.id, job.frames_done, job.frames_failed, cancelled});
   leave_share(job);
+  job.group->jobs.erase(job.id);
+  if (job.group->jobs.empty()) needs_.erase(Needs(job.group->needs));
   records_.forget(job.id);
   jobs_.erase(job.id);
 }
@@ -95,7 +113,17 @@ void ScheduledJobs::update_offer(ScheduledJob& job) {
   if (offer > job.offer) step_.work_appeared = true;
   offered_ += offer - job.offer;
   job.offer = offer;
-  list_ready(job, offer > 0);
+  list_ready(job, has_work(job));
+}
+
+/// What nobody who is there may render stands before no other's.
+void ScheduledJobs::count_worker(const std::vector<TagId>& tags, uint64_t memory, bool one_more) {
+  for (auto& [needs, group] : needs_) {
+    if (!needs.are_met(tags, memory)) continue;
+    group.workers += one_more ? 1 : -1;
+    if (group.workers > (one_more ? 1 : 0)) continue;
+    for (const auto& [id, job] : group.jobs) list_ready(*job, has_work(*job));
+  }
 }
 
 void ScheduledJobs::list_ready(ScheduledJob& job, bool ready) {
@@ -103,10 +131,14 @@ void ScheduledJobs::list_ready(ScheduledJob& job, bool ready) {
   job.ready = ready;
   FairShare& share = *job.share;
   if (ready) {
-    share.ready.emplace(job.serial, &job);
+    FairShare::Ready& alike = share.ready[job.group->serial];
+    alike.group = job.group;
+    alike.jobs.emplace(job.serial, &job);
     ready_shares_.emplace(order_of(share), &share);
   } else {
-    share.ready.erase(job.serial);
+    const auto alike = share.ready.find(job.group->serial);
+    alike->second.jobs.erase(job.serial);
+    if (alike->second.jobs.empty()) share.ready.erase(alike);
     if (share.ready.empty()) ready_shares_.erase(order_of(share));
   }
 }

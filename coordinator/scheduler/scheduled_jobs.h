@@ -1,11 +1,13 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <memory>
 #include <string>
 #include <tuple>
 #include <utility>
+#include <vector>
 
 #include "coordinator/scheduler/pending_records.h"
 #include "coordinator/scheduler/scheduled_job.h"
@@ -16,10 +18,15 @@ namespace hyades::coordinator {
 /// All jobs of one owner at one priority; there while there are some.
 struct FairShare {
   int priority = 0;
-  uint64_t serial = 0;                      ///< of the job that came first
-  uint64_t jobs = 0;                        ///< how many
-  uint64_t running = 0;                     ///< leased units
-  std::map<uint64_t, ScheduledJob*> ready;  ///< jobs that have work, by serial
+  uint64_t serial = 0;   ///< of the job that came first
+  uint64_t jobs = 0;     ///< how many
+  uint64_t running = 0;  ///< leased units
+  /// Jobs that have work for some worker.
+  struct Ready {
+    const NeedsGroup* group = nullptr;
+    std::map<uint64_t, ScheduledJob*> jobs;  ///< by serial
+  };
+  std::map<uint64_t, Ready> ready;  ///< by what they ask of workers: NeedsGroup::serial
 };
 
 /// A frame and its job; both null where one of them is not there.
@@ -42,8 +49,12 @@ class ScheduledJobs {
   ScheduledJob* find(JobId id) const;
   FoundFrame find_frame(const FrameId& id) const;
   const std::map<JobId, std::unique_ptr<ScheduledJob>>& all() const { return jobs_; }
-  /// Adds a job that is not there yet. Its frames wait.
-  ScheduledJob& add(JobId id, const JobPlan& plan);
+  /// Adds a job that is not there yet. Its frames wait. `count` says how many workers there are
+  /// that have what it needs, where no other job needs that.
+  ScheduledJob& add(JobId id, const JobPlan& plan, const Needs& needs,
+                    const std::function<uint64_t(const Needs&)>& count);
+  /// There is a worker with these tags and so much memory more, or less.
+  void count_worker(const std::vector<TagId>& tags, uint64_t memory, bool one_more);
   /// Forgets the job, and what it had on its way to the disk, and says so.
   void end(ScheduledJob& job, bool cancelled);
   /// Ends the job where all its frames are done or have failed; it must not be used any more then.
@@ -66,12 +77,15 @@ class ScheduledJobs {
   void join_share(ScheduledJob& job);
   void leave_share(ScheduledJob& job);
   void list_ready(ScheduledJob& job, bool ready);
+  static bool has_work(const ScheduledJob& job) { return job.offer > 0 && job.group->workers > 0; }
 
   Step& step_;
   PendingRecords& records_;
   std::map<JobId, std::unique_ptr<ScheduledJob>> jobs_;
   uint64_t next_serial_ = 1;
   Shares shares_;
+  std::map<Needs, NeedsGroup> needs_;  ///< of all jobs
+  uint64_t next_group_ = 1;
   std::map<ShareOrder, const FairShare*> ready_shares_;
   uint64_t offered_ = 0;
 };

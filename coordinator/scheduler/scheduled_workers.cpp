@@ -244,9 +244,13 @@ void ScheduledWorkers::update_waiting(WorkerId id, Worker& worker) {
 
 /// Whether the worker could render units of the job at all.
 bool ScheduledWorkers::suits(const ScheduledJob& job, const Worker& worker) {
-  const uint64_t memory = job.plan.needs.memory;
-  return (memory == 0 || worker.memory == 0 || worker.memory >= memory) &&
-         std::includes(worker.tags.begin(), worker.tags.end(), job.tags.begin(), job.tags.end());
+  return job.group->needs.are_met(worker.tags, worker.memory);
+}
+
+uint64_t ScheduledWorkers::count(const Needs& needs) const {
+  return static_cast<uint64_t>(std::count_if(
+      workers_.begin(), workers_.end(),
+      [&](const auto& entry) { return needs.are_met(entry.second.tags, entry.second.memory); }));
 }
 
 bool ScheduledWorkers::may_try(const ScheduledJob& job, WorkerId id, const Worker& worker,

@@ -63,6 +63,8 @@ class ScheduledWorkers {
   /// Removes a worker that is there; what it had is the caller's business.
   void remove(WorkerId id);
   uint64_t threads() const { return threads_; }  ///< of all
+  /// How many have what jobs ask for.
+  uint64_t count(const Needs& needs) const;
 
   /// From now on the worker gets nothing, or gets units again.
   void bar(WorkerId id, Worker& worker, bool barred);

@@ -29,6 +29,7 @@ void WorkerLifecycle::on(const WorkerJoined& e) {
   }
   on(WorkerLost{e.worker});
   Worker& worker = workers_.add(e);
+  jobs_.count_worker(worker.tags, worker.memory, true);
   for (const UnitInHand& held : e.in_hand) {
     const auto before = had.extract(place_of(held));
     adopt(e.worker, worker, held, before ? before.mapped() : step_.now);
@@ -76,6 +77,7 @@ void WorkerLifecycle::on(const WorkerLost& e) {
   if (worker == nullptr) return;
   leases_.release_all(*worker, false);
   affinity_.settle(*worker, std::nullopt);
+  jobs_.count_worker(worker->tags, worker->memory, false);
   workers_.remove(e.worker);
   // A unit that failed with others may now be theirs to try again.
   step_.work_appeared = true;

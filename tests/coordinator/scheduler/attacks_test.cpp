@@ -143,6 +143,93 @@ TEST(Attacks, WhoMayCopyIsAskedThoughManyWaitBeforeHimWhoMayNot) {
   EXPECT_EQ(b.scheduler.leased_units(carl), 1U);
 }
 
+/// What 20,000 requests take while so many older jobs of a higher priority want a tag, and one job
+/// wants none; with every request a unit is leased.
+double seconds_of_requests_beside(SchedulerBench& b, uint64_t jobs, const std::string& tag) {
+  for (uint64_t job = 2; job <= jobs; ++job) {
+    JobPlan plan = small_plan();
+    plan.priority = 5;
+    plan.needs.tags = {tag};
+    b.scheduler.handle(JobAdded{JobId{job}, plan, {}}, b.now);
+    b.scheduler.handle(FrameOpened{JobId{job}, 1}, b.now);
+  }
+  constexpr uint32_t kRequests = 20'000;
+  JobPlan plan = small_plan({1}, kRequests);
+  plan.region = {0, 0, 32, 32};
+  b.scheduler.handle(JobAdded{kJob, plan, {}}, b.now);
+  b.scheduler.handle(FrameOpened{kJob, 1}, b.now);
+  const double begin = cpu_seconds();
+  for (uint32_t i = 0; i < kRequests; ++i) b.scheduler.handle(WorkRequested{kAnna, 1}, b.now);
+  EXPECT_EQ(b.scheduler.leased_units(kJob), kRequests);
+  return cpu_seconds() - begin;
+}
+
+TEST(Attacks, JobsThatNobodyMayRenderStandInNobodysWay) {
+  SchedulerBench b;
+  b.join(kAnna);
+  EXPECT_LT(seconds_of_requests_beside(b, 30'000, "none has it"), 2.0)
+      << "some hundredths of a second; it would take a minute";
+  // Once somebody comes who may, they are what is next.
+  b.tell(WorkerJoined{kBert, 1, "class", {}, {"none has it"}});
+  EXPECT_EQ(b.ask(kBert).job, JobId{2});
+  b.tell(WorkerLost{kBert});
+  EXPECT_EQ(b.scheduler.leased_units(JobId{2}), 0U);
+}
+
+TEST(Attacks, JobsThatOthersMayRenderStandInNobodysWay) {
+  SchedulerBench b;
+  b.join(kAnna);
+  b.tell(WorkerJoined{kBert, 1, "class", {}, {"gpu"}});
+  EXPECT_LT(seconds_of_requests_beside(b, 30'000, "gpu"), 2.0)
+      << "some hundredths of a second; it would take a minute";
+}
+
+// Who asks for nothing and who asks for something that is there stand in one line.
+TEST(Attacks, JobsOfDifferentNeedsComeInTheirOrder) {
+  SchedulerBench b;
+  b.tell(WorkerJoined{kAnna, 1, "class", {}, {"a", "b"}, 64});
+  const std::vector<std::vector<std::string>> needs{{"b"}, {}, {"a"}, {"c"}, {"a", "b"}, {}};
+  for (uint64_t i = 0; i < needs.size(); ++i) {
+    JobPlan plan = small_plan({1}, 1);
+    plan.region = {0, 0, 32, 32};
+    plan.needs.tags = needs[i];
+    plan.needs.memory = i;
+    b.add(plan, {}, JobId{i + 1});
+    b.tell(FrameOpened{JobId{i + 1}, 1});
+  }
+  std::vector<JobId> order;
+  for (int i = 0; i < 5; ++i) order.push_back(b.ask(kAnna).job);
+  EXPECT_THAT(order, testing::ElementsAre(JobId{1}, JobId{2}, JobId{3}, JobId{5}, JobId{6}));
+}
+
+// Those who wait look at what there is as time goes by: not with each tick.
+TEST(Attacks, WhoWaitsLooksAgainOnceASecond) {
+  SchedulerBench b;
+  for (uint64_t i = 1; i <= 3000; ++i) {
+    b.scheduler.handle(WorkerJoined{WorkerId{i}, 1, "class", {}}, b.now);
+    b.scheduler.handle(WorkRequested{WorkerId{i}, 1}, b.now);
+  }
+  const WorkerId choosy{5000};
+  b.scheduler.handle(WorkerJoined{choosy, 1, "class", {}, {"gpu"}}, b.now);
+  for (uint64_t job = 1; job <= 1000; ++job) {
+    JobPlan plan = small_plan();
+    plan.priority = static_cast<int>(job);  // a share of its own
+    plan.needs.tags = {"gpu"};
+    b.scheduler.handle(JobAdded{JobId{job}, plan, {}}, b.now);
+  }
+  for (uint64_t job = 1; job <= 1000; ++job) {
+    b.scheduler.handle(LeasingHeld{true}, b.now);
+    b.scheduler.handle(FrameOpened{JobId{job}, 1}, b.now);
+  }
+  b.scheduler.handle(LeasingHeld{false}, b.now);
+  const double begin = cpu_seconds();
+  for (int i = 0; i < 1000; ++i) {
+    b.now += std::chrono::milliseconds(1);
+    b.scheduler.handle(Tick{}, b.now);
+  }
+  EXPECT_LT(cpu_seconds() - begin, 5.0) << "some tenths of a second; it would take minutes";
+}
+
 // While a dispute was open all frames of all jobs were looked at with each event.
 TEST_F(Conflicts, ThatAreOpenCostNoMoreForManyJobs) {
   deliver_durably(b.ask(kAnna), 1);
