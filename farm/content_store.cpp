@@ -216,7 +216,7 @@ Result<ContentWriter> ContentStore::write(const std::string& name, uint64_t size
   const std::string begun = partial_path(name, whose.owner);
   if (auto fits = make_room(begun, size, crowded); !fits) return fits.error();
   ContentWriter writer(*this, name, size);
-  expected_ += size;
+  expect(writer, whose.owner);
   {
     // One after the other, so that of two that begin at once the second counts the first.
     const core::MutexLock lock(partials_mutex_);
@@ -230,14 +230,32 @@ Result<ContentWriter> ContentStore::write(const std::string& name, uint64_t size
   return writer;
 }
 
+void ContentStore::expect(ContentWriter& writer, const std::string& owner) {
+  const core::MutexLock lock(owners_mutex_);
+  std::erase_if(expected_of_, [](const auto& one) { return one.second.use_count() == 1; });
+  auto& his = expected_of_[owner];
+  if (!his) his = std::make_shared<std::atomic<uint64_t>>(0);
+  *his += writer.size_;
+  expected_ += writer.size_;
+  writer.expected_ = his;
+}
+
+std::map<std::string, uint64_t> ContentStore::expected_of_owners() const {
+  std::map<std::string, uint64_t> all;
+  const core::MutexLock lock(owners_mutex_);
+  for (const auto& [owner, bytes] : expected_of_) {
+    if (*bytes > 0) all[owner] = *bytes;
+  }
+  return all;
+}
+
 void ContentStore::take_kept(ContentWriter& writer) {
   const auto now = identify(writer.path_);
   const core::MutexLock lock(partials_mutex_);
   const auto kept = kept_.extract(writer.path_);
   if (!kept || !now || *now != kept.mapped().identity || now->size > writer.size_) return;
   writer.hash_ = std::move(kept.mapped().hash);
-  writer.offset_ = now->size;
-  expected_ -= now->size;
+  writer.go_on(now->size);
 }
 
 void ContentStore::keep(ContentWriter& writer) {

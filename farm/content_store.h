@@ -138,6 +138,8 @@ class ContentStore {
   uint64_t commits() const { return commits_; }
   /// Bytes that this process' writers have still to write.
   uint64_t expected() const { return expected_; }
+  /// Those of each owner who has any.
+  std::map<std::string, uint64_t> expected_of_owners() const;
   /// Notes that the file has been of use now: who removes what is not used waits again.
   void touch(const std::string& name) const;
   /// Removes file `name` if it was neither written, read nor touched within `age`, by the wall
@@ -198,9 +200,15 @@ class ContentStore {
   /// Removes what all owners have of file `name`, which is whole, but for those who write it.
   void drop_partials(const std::string& name);
   core::Status commit(ContentWriter& writer);
+  /// Counts what the writer has still to write as expected, of this owner.
+  void expect(ContentWriter& writer, const std::string& owner);
 
   Options options_;
-  std::atomic<uint64_t> expected_{0};   ///< bytes that this process' writers have still to write
+  std::atomic<uint64_t> expected_{0};  ///< bytes that this process' writers have still to write
+  mutable core::Mutex owners_mutex_;
+  /// Of expected_ each owner's part, which his writers count down.
+  std::map<std::string, std::shared_ptr<std::atomic<uint64_t>>> expected_of_
+      HYADES_GUARDED_BY(owners_mutex_);
   std::atomic<int64_t> next_sweep_{0};  ///< seconds of the steady clock
   std::atomic<uint64_t> commits_{0};
   /// What all files take.

@@ -48,10 +48,12 @@ ContentWriter::ContentWriter(ContentWriter&& other) noexcept
       resumable_(other.resumable_),
       counted_(std::exchange(other.counted_, false)),
       file_(std::move(other.file_)),
-      hash_(std::move(other.hash_)) {}
+      hash_(std::move(other.hash_)),
+      expected_(std::move(other.expected_)) {}
 
 ContentWriter::~ContentWriter() {
   if (store_ == nullptr) return;
+  *expected_ -= size_ - offset_;
   store_->expected_ -= size_ - offset_;
   // Nobody would find a copy with a name of its own again, nor look for what is whole by now.
   const bool useless = file_.valid() && (!resumable_ || !store_->missing(name_));
@@ -59,6 +61,12 @@ ContentWriter::~ContentWriter() {
   if (useless && named) ::unlink(path_.c_str());
   if (!useless && named) store_->keep(*this);
   stop_counting();
+}
+
+void ContentWriter::go_on(uint64_t bytes) {
+  offset_ += bytes;
+  *expected_ -= bytes;
+  store_->expected_ -= bytes;
 }
 
 void ContentWriter::stop_counting() {
@@ -107,8 +115,7 @@ Status ContentWriter::read_partial(bool* busy) {
     if (!got) return Error{"cannot read " + path_ + ": " + core::io_reason(errno)};
     if (*got == 0) return {};
     hash_.add(std::span(piece).first(*got));
-    offset_ += *got;
-    store_->expected_ -= *got;
+    go_on(*got);
   }
 }
 
@@ -118,8 +125,7 @@ Status ContentWriter::append(std::span<const std::byte> bytes) {
   }
   if (!core::write_all_at(file_.get(), bytes, offset_)) return write_failure(path_, errno);
   hash_.add(bytes);
-  offset_ += bytes.size();
-  store_->expected_ -= bytes.size();
+  go_on(bytes.size());
   return {};
 }
 

@@ -1,7 +1,9 @@
 #pragma once
 
+#include <atomic>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <string>
 #include <utility>
@@ -44,6 +46,8 @@ class ContentWriter {
   core::Status take_partial(const std::string& begun);
   /// Reads what it has and does not know; `busy` as for ContentStore::read().
   core::Status read_partial(bool* busy);
+  /// So many bytes more are there: they are not expected any more.
+  void go_on(uint64_t bytes);
   /// The unfinished file is not written any more.
   void stop_counting();
 
@@ -56,6 +60,7 @@ class ContentWriter {
   bool counted_ = false;   ///< among ContentStore::writing_
   core::Descriptor file_;  ///< locked exclusively
   core::Sha256Stream hash_;
+  std::shared_ptr<std::atomic<uint64_t>> expected_;  ///< the owner's, in ContentStore
 };
 
 }  // namespace hyades::farm

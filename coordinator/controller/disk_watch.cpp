@@ -84,15 +84,16 @@ void DiskWatch::look() {
   sweep_partials();
 }
 
-grpc::Status DiskWatch::admit(uint64_t bytes) {
+grpc::Status DiskWatch::admit(uint64_t bytes, const std::string& owner) {
   measure();
+  const auto expected = context_.assets->expected_of_owners();
   const StateLock lock(context_.mutex);
   if (room_.level() != DiskLevel::roomy) {
     return farm::retry_later(grpc::StatusCode::RESOURCE_EXHAUSTED,
                              room_.reason() + "; nothing new is taken in until there is room",
                              kAskAgain);
   }
-  const uint64_t room = surplus(room_.room(), context_.assets->expected());
+  const uint64_t room = room_beside(room_.room(), expected, owner);
   if (bytes <= room) return grpc::Status::OK;
   return farm::retry_later(
       grpc::StatusCode::RESOURCE_EXHAUSTED,

@@ -27,9 +27,9 @@ class DiskWatch {
   /// Measures the disk, holds back what has to wait for room, and lets go on what has it. An error
   /// of the system changes nothing.
   void measure() HYADES_EXCLUDES(state_lock);
-  /// Whether `bytes` more may be stored, or (0) something new may begin: OK, or RESOURCE_EXHAUSTED
-  /// with the reason. May wait for the disk.
-  grpc::Status admit(uint64_t bytes) HYADES_EXCLUDES(state_lock);
+  /// Whether `bytes` more of this owner's may be stored, or (0) something new may begin: OK, or
+  /// RESOURCE_EXHAUSTED with the reason. May wait for the disk.
+  grpc::Status admit(uint64_t bytes, const std::string& owner = {}) HYADES_EXCLUDES(state_lock);
   /// Whether the disk may be why a frame could not be finished.
   bool is_short_for(const core::Film& film) HYADES_EXCLUDES(state_lock);
   /// Whether even what was begun has to wait.

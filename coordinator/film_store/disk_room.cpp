@@ -28,6 +28,21 @@ uint64_t default_reserve(uint64_t size) { return std::min(size / kShareKept, kMo
 
 }  // namespace
 
+uint64_t room_beside(uint64_t room, const std::map<std::string, uint64_t>& expected,
+                     const std::string& owner) {
+  std::vector<uint64_t> others;
+  for (const auto& [whose, bytes] : expected) {
+    if (whose == owner) {
+      room = surplus(room, bytes);
+    } else {
+      others.push_back(bytes);
+    }
+  }
+  std::sort(others.rbegin(), others.rend());
+  for (const uint64_t bytes : others) room -= std::min(bytes, room / 2);
+  return room;
+}
+
 void DiskRoom::Tank::fill(uint64_t size_now, uint64_t free_now, uint64_t reserve_now) {
   size = size_now;
   free = free_now;

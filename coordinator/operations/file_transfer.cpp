@@ -29,7 +29,8 @@ grpc::Status begin_upload(Controller& controller, AuditLog* log, const Caller& c
   if (assets.contains(name, size, &busy)) return grpc::Status::OK;
   if (busy) return still_checked();
   const uint64_t begun = std::min(assets.begun(name, caller.name), size);
-  if (grpc::Status room = controller.disk().admit(size - begun); !room.ok()) return room;
+  if (grpc::Status room = controller.disk().admit(size - begun, caller.name); !room.ok())
+    return room;
   grpc::Status over_quota;
   const auto may_begin = [&](const farm::UnfinishedFiles& others) -> core::Status {
     over_quota = controller.quotas().may_upload(caller.name, size, others,

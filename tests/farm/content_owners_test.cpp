@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <map>
 #include <string>
 
 #include "tests/farm/content_testing.h"
@@ -77,6 +78,26 @@ TEST_F(ContentOwners, OnesGarbageSpoilsNoOthersFile) {
   ASSERT_TRUE(whole) << error_of(whole);
   EXPECT_TRUE(store->contains(name, text.size()));
   EXPECT_EQ(unfinished(), 0U) << "nobody needs what others have of it";
+}
+
+TEST_F(ContentOwners, WhatEachStillHasToSendIsKnown) {
+  using Expected = std::map<std::string, uint64_t>;
+  {
+    auto eve = store->write(name_of("abcdef"), 6, {"eve"});
+    auto ada = store->write(name_of("mesh"), 4, {"ada"});
+    auto too = store->write(name_of("text"), 4, {"ada"});
+    ASSERT_TRUE(eve && ada && too);
+    EXPECT_EQ(store->expected_of_owners(), (Expected{{"ada", 8}, {"eve", 6}}));
+    ASSERT_TRUE(eve->append(bytes_of("abcd")));
+    ASSERT_TRUE(ada->append(bytes_of("mesh")));
+    ASSERT_TRUE(ada->commit());
+    EXPECT_EQ(store->expected_of_owners(), (Expected{{"ada", 4}, {"eve", 2}}));
+    EXPECT_EQ(store->expected(), 6U);
+  }
+  EXPECT_EQ(store->expected_of_owners(), Expected{});
+  EXPECT_EQ(store->expected(), 0U);
+  const auto eve = store->write(name_of("abcdef"), 6, {"eve"});
+  EXPECT_EQ(store->expected_of_owners(), (Expected{{"eve", 2}})) << "she goes on";
 }
 
 TEST_F(ContentOwners, WhoStillWritesAFileThatIsWholeLeavesNothingBehind) {

@@ -101,5 +101,15 @@ TEST(DiskRoom, MeasuresWhatIsThere) {
   EXPECT_FALSE(measure_disk(folder.file("none")).ok());
 }
 
+TEST(DiskRoom, IsNotTakenByWhoAnnouncesMuch) {
+  EXPECT_EQ(room_beside(1000, {}, "ada"), 1000U);
+  EXPECT_EQ(room_beside(1000, {{"ada", 400}}, "ada"), 600U) << "what one announces oneself counts";
+  EXPECT_EQ(room_beside(1000, {{"ada", 1000}}, "ada"), 0U);
+  EXPECT_EQ(room_beside(1000, {{"bob", 400}}, "ada"), 600U);
+  EXPECT_EQ(room_beside(1000, {{"eve", 1'000'000}}, "ada"), 500U);
+  EXPECT_EQ(room_beside(1000, {{"bob", 100}, {"eve", 1000}}, "ada"), 400U);
+  EXPECT_EQ(room_beside(1000, {{"ada", 200}, {"eve", 1000}}, "ada"), 400U);
+}
+
 }  // namespace
 }  // namespace hyades::coordinator

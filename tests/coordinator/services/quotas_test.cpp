@@ -136,6 +136,17 @@ class Quotas : public ::testing::Test {
   v1::SubmitResponse response;
 };
 
+TEST_F(Quotas, OfRoomOnTheDiskAreNotNeededAgainstWhoAnnouncesAllOfIt) {
+  constexpr uint64_t kBudget = uint64_t{64} << 20U;
+  world.options.disk.budget = kBudget;
+  world.start();
+  const auto eve = world.controller->assets().write(core::to_hex(core::sha256("film")), kBudget,
+                                                    {"eve"});  // and sends nothing
+  ASSERT_TRUE(eve.ok());
+  EXPECT_TRUE(world.controller->disk().admit(kBudget / 4, "ada").ok());
+  EXPECT_FALSE(world.controller->disk().admit(1, "eve").ok()) << "hers counts for herself";
+}
+
 TEST_F(Quotas, OfJobsThatAreNotOver) {
   world.options.per_owner.jobs = 2;
   world.start();
