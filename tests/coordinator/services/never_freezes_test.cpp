@@ -40,7 +40,12 @@ class NeverFreezes : public testing::Test {
   void TearDown() override {
     trouble->of_writes(Trouble::Kind::none);
     trouble->of_reads(Trouble::Kind::none);
+    trouble->of_outputs(Trouble::Kind::none);
+    await_clients();
+  }
+  void await_clients() {
     for (std::thread& client : clients) client.join();
+    clients.clear();
   }
 
   grpc::Status cancel(uint64_t job, std::chrono::milliseconds timeout = 20s) const {
@@ -134,8 +139,7 @@ TEST_F(NeverFreezes, WhileTheJobStoreIsFull) {
         [&, id = ended[i], first = i % 2 == 0] { expect_not_now(first ? remove(id) : retry(id)); });
   }
   expect_served(job, *busy);
-  for (std::thread& client : clients) client.join();
-  clients.clear();
+  await_clients();
   EXPECT_EQ(wrong, 0) << "nothing was stored, and somebody was told that it is";
   trouble->of_writes(Trouble::Kind::none);
   for (const uint64_t id : open) EXPECT_TRUE(world.wait_for(id, v1::JOB_STATE_CANCELLED)) << id;
@@ -200,6 +204,7 @@ TEST_F(NeverFreezes, WhileALongDocumentIsRead) {
     EXPECT_TRUE(remove(ended[removed++], 1500ms).ok());
     std::this_thread::sleep_for(100ms);
   }
+  await_clients();
   EXPECT_GT(removed, 3U) << "it was read too fast for anybody to wait";
 }
 
@@ -241,6 +246,7 @@ TEST_F(LongRecovery, OfARetriedJobHoldsNobodyUp) {
     taken = true;
   });
   expect_others_served([&] { return taken.load(); });
+  await_clients();
 }
 
 TEST_F(LongRecovery, AfterAStartHoldsNobodyUp) {
@@ -263,8 +269,7 @@ TEST_F(NeverFreezes, WhileTheOutputsOfARetriedJobAreLookedAt) {
   EXPECT_EQ(retry(job).error_code(), grpc::StatusCode::UNAVAILABLE);
   EXPECT_EQ(cancel(job).error_code(), grpc::StatusCode::UNAVAILABLE);
   trouble->of_outputs(Trouble::Kind::none);
-  for (std::thread& client : clients) client.join();
-  clients.clear();
+  await_clients();
   EXPECT_TRUE(cancel(job).ok());
 }
 
@@ -394,8 +399,7 @@ TEST_F(NeverFreezes, WhileFilesCannotBeRead) {
       std::this_thread::sleep_for(1ms);
     }
   });
-  for (std::thread& client : clients) client.join();
-  clients.clear();
+  await_clients();
   over = true;
   writer.join();
 }
@@ -502,8 +506,7 @@ TEST_F(NeverFreezes, WhatIsStoredLastOfAJobIsWhatWasLast) {
   });
   std::this_thread::sleep_for(10ms);
   EXPECT_TRUE(cancel(job).ok());
-  for (std::thread& client : clients) client.join();
-  clients.clear();
+  await_clients();
   world.stop();
   world.start();
   EXPECT_EQ(world.get(job).job().state(), v1::JOB_STATE_CANCELLED);
