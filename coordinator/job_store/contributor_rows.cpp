@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "coordinator/job_store/database.h"
+#include "coordinator/job_store/removals.h"
 #include "core/base/hash.h"
 
 namespace hyades::coordinator {
@@ -41,6 +42,12 @@ bool holds(const std::string& packed, const std::string& mark) {
   return false;
 }
 
+/// Whether the worker had, or may have had, one of these parts of a frame that was finished then.
+bool had_part(const std::string& worker, uint64_t since, uint64_t moment,
+              const std::string& parts) {
+  return moment > since && (holds(parts, mark_of(worker)) || holds(parts, mark_of({})));
+}
+
 }  // namespace
 
 core::Status store_contributors(sqlite3* db, uint64_t job, const StoredFrame& frame) {
@@ -53,28 +60,43 @@ core::Status store_contributors(sqlite3* db, uint64_t job, const StoredFrame& fr
       .run();
 }
 
-core::Result<std::vector<JobFrames>> suspect_frames_of(sqlite3* db, const std::string& worker,
-                                                       uint64_t since) {
-  const std::string mark = mark_of(worker);
-  const std::string anybody = mark_of({});
-  std::vector<JobFrames> jobs;
+core::Result<bool> find_frames_of(sqlite3* db, const std::string& worker, uint64_t since,
+                                  FrameOfJob& last, uint32_t limit,
+                                  std::vector<FrameOfJob>& found) {
   Query rows(db,
-             "SELECT job, frame, workers FROM parts INDEXED BY parts_by_moment "
-             "WHERE moment > ? AND +job IN (SELECT id FROM jobs) ORDER BY job, frame");
-  rows.bind(static_cast<int64_t>(since));
-  while (rows.next()) {
-    const std::string workers = rows.bytes(2);
-    if (!holds(workers, mark) && !holds(workers, anybody)) continue;
-    Query suspect(db,
-                  "UPDATE frames SET doubtful = 1 WHERE job = ? AND frame = ? AND NOT doubtful");
-    suspect.bind(rows.integer(0)).bind(rows.integer(1));
-    if (core::Status done = suspect.run(); !done) return done.error();
-    if (sqlite3_changes(db) == 0) continue;
-    const auto job = static_cast<uint64_t>(rows.integer(0));
-    if (jobs.empty() || jobs.back().job != job) jobs.push_back({job, {}});
-    jobs.back().frames.push_back(static_cast<int32_t>(rows.integer(1)));
+             "SELECT job, frame, moment, workers FROM parts WHERE (job, frame) > (?, ?) "
+             "ORDER BY job, frame LIMIT ?");
+  rows.bind(number(last.job)).bind(int64_t{last.frame}).bind(int64_t{limit});
+  uint32_t looked = 0;
+  for (; rows.next(); ++looked) {
+    last = {static_cast<uint64_t>(rows.integer(0)), static_cast<int32_t>(rows.integer(1))};
+    if (had_part(worker, since, static_cast<uint64_t>(rows.integer(2)), rows.bytes(3))) {
+      found.push_back(last);
+    }
   }
   if (core::Status status = rows.status(); !status) return status.error();
+  return looked == limit;
+}
+
+core::Result<std::vector<JobFrames>> make_doubtful(sqlite3* db, const std::string& worker,
+                                                   uint64_t since, std::vector<FrameOfJob> frames) {
+  std::sort(frames.begin(), frames.end());
+  std::vector<JobFrames> jobs;
+  for (const FrameOfJob& one : frames) {
+    Query row(db, "SELECT moment, workers FROM parts WHERE job = ?1 AND frame = ?2" + kJobIsThere);
+    row.bind(number(one.job)).bind(int64_t{one.frame});
+    const bool had =
+        row.next() && had_part(worker, since, static_cast<uint64_t>(row.integer(0)), row.bytes(1));
+    if (core::Status status = row.status(); !status) return status.error();
+    if (!had) continue;
+    Query suspect(db,
+                  "UPDATE frames SET doubtful = 1 WHERE job = ? AND frame = ? AND NOT doubtful");
+    suspect.bind(number(one.job)).bind(int64_t{one.frame});
+    if (core::Status done = suspect.run(); !done) return done.error();
+    if (sqlite3_changes(db) == 0) continue;
+    if (jobs.empty() || jobs.back().job != one.job) jobs.push_back({one.job, {}});
+    jobs.back().frames.push_back(one.frame);
+  }
   return jobs;
 }
 

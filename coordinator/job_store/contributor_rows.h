@@ -2,6 +2,7 @@
 
 #include <sqlite3.h>
 
+#include <compare>
 #include <cstddef>
 #include <cstdint>
 #include <string>
@@ -20,10 +21,22 @@ inline constexpr size_t kMostContributors = 256;
 /// Stores who had a part in a frame of which nothing is stored yet; within a transaction.
 core::Status store_contributors(sqlite3* db, uint64_t job, const StoredFrame& frame);
 
-/// Makes doubtful the frames that were finished after `since` and that the worker had a part in, or
-/// may have had, and returns those that were not so before; within a transaction.
-core::Result<std::vector<JobFrames>> suspect_frames_of(sqlite3* db, const std::string& worker,
-                                                       uint64_t since);
+/// A frame of some job.
+struct FrameOfJob {
+  uint64_t job = 0;
+  int32_t frame = INT32_MIN;
+  auto operator<=>(const FrameOfJob&) const = default;
+};
+
+/// Looks at `limit` finished frames behind `last`, which becomes the last one, and adds to `found`
+/// those that were finished after `since` and that the worker had a part in, or may have had.
+/// Whether there may be more.
+core::Result<bool> find_frames_of(sqlite3* db, const std::string& worker, uint64_t since,
+                                  FrameOfJob& last, uint32_t limit, std::vector<FrameOfJob>& found);
+/// Makes those of `frames` doubtful of which that still holds, and returns those that were not so
+/// before; within a transaction.
+core::Result<std::vector<JobFrames>> make_doubtful(sqlite3* db, const std::string& worker,
+                                                   uint64_t since, std::vector<FrameOfJob> frames);
 
 /// JobStore::trust() and trusted().
 core::Status store_trust(sqlite3* db, const std::vector<StoredTrust>& workers);

@@ -144,7 +144,6 @@ ALTER TABLE jobs ADD COLUMN busy_ns INTEGER NOT NULL DEFAULT 0;
 )",
     R"(
 CREATE TABLE removals (job INTEGER PRIMARY KEY);  -- gone, with rows of it left: removals.h
-CREATE INDEX parts_by_moment ON parts (moment);
 )",
     R"(
 CREATE TABLE specs (  -- megabytes, apart from what is listed and changed

@@ -237,6 +237,7 @@ class SqliteJobStore final : public JobStore {
   core::Status frame_over(uint64_t job, const StoredFrame& frame,
                           const std::vector<StoredOutput>& outputs) override {
     core::Status stored = at_once([&]() HYADES_REQUIRES(mutex_) {
+      if (looking_ > 0 && !frame.parts.empty()) stored_meanwhile_.push_back({job, frame.frame});
       core::Status done = put_frame(db_.get(), job, frame);
       return done ? put_outputs(db_.get(), job, outputs) : done;
     });
@@ -333,10 +334,16 @@ class SqliteJobStore final : public JobStore {
   core::Result<std::vector<JobFrames>> mark_divergent(const StoredQuarantine& worker,
                                                       uint64_t since,
                                                       const StoredLine& line) override {
+    std::vector<FrameOfJob> found;
+    const LookingThrough frames(*this);
+    if (core::Status looked = look_through(worker.worker, since, found); !looked) {
+      return looked.error();
+    }
     std::vector<JobFrames> suspects;
     const core::Status stored = at_once([&]() HYADES_REQUIRES(mutex_) -> core::Status {
       if (core::Status kept = put_quarantine(worker); !kept) return kept;
-      auto jobs = suspect_frames_of(db_.get(), worker.worker, since);
+      found.insert(found.end(), stored_meanwhile_.begin(), stored_meanwhile_.end());
+      auto jobs = make_doubtful(db_.get(), worker.worker, since, std::move(found));
       if (!jobs) return jobs.error();
       suspects = std::move(*jobs);
       for (const JobFrames& job : suspects) {
@@ -454,6 +461,37 @@ class SqliteJobStore final : public JobStore {
     }
   }
 
+  /// While it lives the finished frames that are stored are noted.
+  class LookingThrough {
+   public:
+    explicit LookingThrough(SqliteJobStore& store) : store_(store) {
+      const core::MutexLock lock(store_.mutex_);
+      ++store_.looking_;
+    }
+    ~LookingThrough() {
+      const core::MutexLock lock(store_.mutex_);
+      if (--store_.looking_ == 0) store_.stored_meanwhile_ = {};
+    }
+    LookingThrough(const LookingThrough&) = delete;
+    LookingThrough& operator=(const LookingThrough&) = delete;
+
+   private:
+    SqliteJobStore& store_;
+  };
+
+  /// Finds the frames that the worker had a part in; others have their turns.
+  core::Status look_through(const std::string& worker, uint64_t since,
+                            std::vector<FrameOfJob>& found) {
+    FrameOfJob last;
+    for (bool more = true; more; let_others()) {
+      const core::MutexLock lock(mutex_);
+      const auto page = find_frames_of(db_.get(), worker, since, last, kRowsAtOnce, found);
+      if (!page) return page.error();
+      more = *page;
+    }
+    return {};
+  }
+
   /// Short-lived: SQLite prepares such statements in some ten microseconds.
   Query query(std::string_view sql) HYADES_REQUIRES(mutex_) { return {db_.get(), sql}; }
 
@@ -483,6 +521,8 @@ class SqliteJobStore final : public JobStore {
   const std::string starts_;
   ReserveFile reserve_;
   LogRows lines_ HYADES_GUARDED_BY(mutex_);
+  int looking_ HYADES_GUARDED_BY(mutex_) = 0;  ///< how many look through all finished frames
+  std::vector<FrameOfJob> stored_meanwhile_ HYADES_GUARDED_BY(mutex_);
 };
 
 }  // namespace

@@ -392,7 +392,7 @@ TEST(JobStore, OwnersOfTheSixthSchemaAreProvenByTokensThatWereThereBefore) {
                          "ALTER TABLE jobs ADD COLUMN spec BLOB NOT NULL DEFAULT x''; "
                          "UPDATE jobs SET spec = (SELECT spec FROM specs WHERE job = id); "
                          "DROP TABLE specs; DROP INDEX jobs_of_owner; "
-                         "DROP TABLE removals; DROP INDEX parts_by_moment; "
+                         "DROP TABLE removals; "
                          "DROP TRIGGER count_core_time; DROP TABLE core_time; "
                          "ALTER TABLE jobs DROP COLUMN owner_proven; "
                          "ALTER TABLE jobs DROP COLUMN options; DROP TABLE secret; "

@@ -260,24 +260,46 @@ TEST_F(LargeJobs, AreNotSearchedForOneOutput) {
   EXPECT_EQ(count("outputs"), 20'000);
 }
 
-TEST_F(LargeJobs, AreNotSearchedForWhatAWorkerDidOfLate) {
+TEST_F(LargeJobs, AreLookedThroughInTurnsWithOthersForWhatAWorkerDid) {
+  constexpr int32_t kMany = 20'000;
+  ASSERT_TRUE(store_->add_job(job_of("ada")).ok());
   ASSERT_TRUE(store_->add_job(job_of("ada")).ok());
   open_raw();
   {
     Transaction all(db_.get());
-    for (int32_t frame = 0; frame < 20'000; ++frame) {
-      const auto moment = static_cast<uint64_t>(frame);
-      ASSERT_TRUE(put_frame(db_.get(), 1, {frame, true, "", "", 0, {"worker"}, moment}).ok());
+    for (int32_t frame = 0; frame < kMany; ++frame) {
+      const std::string worker = frame % 1000 == 0 ? "divergent" : "good";
+      ASSERT_TRUE(put_frame(db_.get(), 2, {frame, true, "", "", 0, {worker}, 5}).ok());
     }
     ASSERT_TRUE(all.commit().ok());
   }
-  const auto suspects = [&] {
-    const auto found = suspect_frames_of(db_.get(), "worker", 19'997);
-    ASSERT_TRUE(found.ok());
-    ASSERT_EQ(found->size(), 1U);
-    EXPECT_EQ(found->front().frames, (std::vector<int32_t>{19'998, 19'999}));
-  };
-  EXPECT_LT(steps_of(suspects), 10);
+  db_.reset();
+  open_store();
+  // Frames that are finished meanwhile, before those that are looked at.
+  std::atomic<bool> over{false};
+  std::atomic<int32_t> finished{0};
+  std::thread others([&] {
+    while (!over) {
+      EXPECT_TRUE(store_->frame_over(1, {finished, true, "", "", 0, {"divergent"}, 6}, {}).ok());
+      ++finished;
+    }
+  });
+  std::vector<JobFrames> suspects;
+  EXPECT_GE(answered_while([&] {
+              suspects = *store_->mark_divergent({"divergent", "why"}, 4, {1, 2, {}, "", ""});
+            }),
+            10);
+  while (finished < 100) std::this_thread::yield();
+  over = true;
+  others.join();
+  ASSERT_EQ(suspects.size(), 2U);
+  EXPECT_EQ(suspects[1].frames.size(), static_cast<size_t>(kMany) / 1000);
+  // Of the others all up to some moment are doubtful, and it was not the first.
+  const auto frames = store_->frames(1);
+  size_t doubtful = 0;
+  while (doubtful < frames->size() && frames->at(doubtful).doubtful) ++doubtful;
+  EXPECT_GT(doubtful, 1U);
+  EXPECT_EQ(suspects[0].frames.size(), doubtful) << "none after one that is not";
 }
 
 }  // namespace
