@@ -57,7 +57,7 @@ def add_objects(context: Context) -> None:
         object = instance.object
         if instance.is_instance:  # there may be millions
             data = object.data
-            known = copies.get((object.as_pointer(), data.as_pointer())) if data is not None else None
+            known = copies.get(_kind(object)) if data is not None else None
             if known is not None:
                 first, second, third, _ = instance.matrix_world
                 known.matrices.append(first[:] + second[:] + third[:])
@@ -75,7 +75,7 @@ def _add(context: Context, copies: dict[Any, _Copies], instance: Any, object: An
         pieces = pieces_of(context, object, matrix)
         rows = tuple(axes.array(matrix)[:3].reshape(-1))
         found = _Copies(object.name, pieces, _is_seen(context, object), [rows])
-        copies[(object.as_pointer(), object.data.as_pointer())] = found
+        copies[_kind(object)] = found
     elif kind in _WITH_SURFACE:
         is_seen = _is_seen(context, object)
         for piece in pieces_of(context, object, matrix):
@@ -86,6 +86,12 @@ def _add(context: Context, copies: dict[Any, _Copies], instance: Any, object: An
         add_volume(context, object, axes.array(matrix))
     elif kind not in _WITHOUT:
         context.complain(f"object '{object.name}'", f"objects of type {kind.lower()} are not supported yet")
+
+
+def _kind(object: Any) -> tuple[int, int]:
+    """What is the same for all copies of one thing. The object of an instance is one for this step alone, whose address the
+    next one may have, too; the object that it stands for stays."""
+    return object.original.as_pointer(), object.data.as_pointer()
 
 
 @contextmanager
