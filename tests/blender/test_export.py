@@ -1,12 +1,14 @@
 """What the exporter makes of things in a scene: the job says the same, or it is told by name."""
 
 import unittest
+from unittest import mock
 
 import bpy
 import hyades
 from addon import AddOnTest
 
 from hyades_render import animation
+from hyades_render.export import objects
 
 
 class ExportTest(AddOnTest):
@@ -55,6 +57,23 @@ class Copies(ExportTest):
             (body,) = job.objects[name].instance.objects.values()
             self.assertIs(body.material, job.materials[name])
             self.assertEqual(len(job.objects[name].places.matrices), 3)
+
+    def test_copies_look_as_their_place_has_them(self) -> None:
+        made, shader = self.material("Place")
+        info = made.node_tree.nodes.new("ShaderNodeObjectInfo")
+        made.node_tree.links.new(info.outputs["Location"], shader.inputs[0])
+        thing = bpy.data.objects.new("Thing", bpy.data.objects["Cube"].data.copy())
+        thing.data.materials[0] = made
+        self.collection(thing, copies=4)
+        self.scene.hyades.bake_size = 64
+        job, said = self.export()
+        copies = [body for name, body in job.objects.items() if name.startswith("Thing")]
+        self.assertEqual([round(float(body.material.color.file.max()), 3) for body in copies], [0, 2, 4, 6])
+        self.assertEqual(said, "")
+        with mock.patch.object(objects, "_MOST_OWN", 2):
+            job, said = self.export()
+        self.assertEqual(len(job.objects["Thing"].places.matrices), 3)
+        self.assertIn("object 'Thing': its looks depend on where it is, or on the object: copies beyond 2", said)
 
 
 if __name__ == "__main__":

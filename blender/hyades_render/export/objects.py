@@ -25,11 +25,17 @@ _WITH_SURFACE = {"MESH", "CURVE", "SURFACE", "META", "FONT"}
 _WITHOUT = {"CAMERA", "EMPTY", "LATTICE", "ARMATURE", "SPEAKER", "LIGHT_PROBE", "GPENCIL", "GREASEPENCIL"}
 
 
+_MOST_OWN = 64
+"""Copies of one thing that may look different each: each may bring a picture of its own."""
+
+
 class Piece(NamedTuple):
     """A part of an object that has one material, ready to be placed."""
 
     body: objects.Mesh
     made: Made
+    is_of_object: bool = False
+    """Whether it looks so for this object at this place alone."""
 
     def object(self) -> objects.Mesh:
         """The part as an object of its own. Thousands may share a piece: keys that hold are not checked again."""
@@ -47,6 +53,13 @@ class _Copies(NamedTuple):
     is_seen: bool
     matrices: list[tuple[float, ...]]
     """Three rows each."""
+    others: list[tuple[tuple[float, ...], list[Piece]]]
+    """Copies that look different: where they are, and what they are made of."""
+
+    @property
+    def looks_differ(self) -> bool:
+        """Whether shading depends on the place, or on the object."""
+        return any(piece.is_of_object for piece in self.pieces)
 
 
 def add_objects(context: Context) -> None:
@@ -58,9 +71,10 @@ def add_objects(context: Context) -> None:
         if instance.is_instance:  # there may be millions
             data = object.data
             known = copies.get(_kind(object)) if data is not None else None
-            if known is not None:
+            if known is not None and not (known.looks_differ and _add_another(context, known, instance, object)):
                 first, second, third, _ = instance.matrix_world
                 known.matrices.append(first[:] + second[:] + third[:])
+            if known is not None:
                 continue
         if instance.show_self:
             _add(context, copies, instance, object)
@@ -74,7 +88,7 @@ def _add(context: Context, copies: dict[Any, _Copies], instance: Any, object: An
     if kind in _WITH_SURFACE and instance.is_instance:
         pieces = pieces_of(context, object, matrix)
         rows = tuple(axes.array(matrix)[:3].reshape(-1))
-        found = _Copies(object.name, pieces, _is_seen(context, object), [rows])
+        found = _Copies(object.name, pieces, _is_seen(context, object), [rows], [])
         copies[_kind(object)] = found
     elif kind in _WITH_SURFACE:
         is_seen = _is_seen(context, object)
@@ -86,6 +100,18 @@ def _add(context: Context, copies: dict[Any, _Copies], instance: Any, object: An
         add_volume(context, object, axes.array(matrix))
     elif kind not in _WITHOUT:
         context.complain(f"object '{object.name}'", f"objects of type {kind.lower()} are not supported yet")
+
+
+def _add_another(context: Context, copies: _Copies, instance: Any, object: Any) -> bool:
+    """One more copy, with pieces of its own. Whether there is room for it: else it looks like the first."""
+    if len(copies.others) + 1 >= _MOST_OWN:
+        what = f"its looks depend on where it is, or on the object: copies beyond {_MOST_OWN} look like the first"
+        context.complain(f"object '{copies.name}'", what)
+        return False
+    matrix = instance.matrix_world
+    rows = tuple(axes.array(matrix)[:3].reshape(-1))
+    copies.others.append((rows, pieces_of(context, object, matrix)))
+    return True
 
 
 def _kind(object: Any) -> tuple[int, int]:
@@ -137,7 +163,7 @@ def _piece(context: Context, whole: PartOfSurface, data: Any) -> Piece:
     body = objects.Mesh(mesh=mesh, material=made.material, interior=made.interior)
     if not values.is_constant(made.emission, 0):
         body.emit = objects.Emit(color=values.held(made.emission, 0.0, 1e18), radiance=1, two_sided=True)
-    return Piece(body, made)
+    return Piece(body, made, whole.is_of_object)
 
 
 def _material_in(object: Any, slot: int) -> Optional[Any]:
@@ -164,22 +190,34 @@ def _is_seen(context: Context, object: Any) -> bool:
     return bool(object.visible_camera)
 
 
-def _place(context: Context, copies: _Copies) -> None:
-    """Copies as a group that is placed by a file; one by one where they are few, or shine."""
-    matrices = numpy.zeros((len(copies.matrices), 4, 4))
-    matrices[:, :3] = numpy.array(copies.matrices).reshape(-1, 3, 4)
+def _placed(rows: list[tuple[float, ...]]) -> numpy.ndarray:
+    """Matrices (n, 4, 4) into the job's world."""
+    matrices = numpy.zeros((len(rows), 4, 4))
+    matrices[:, :3] = numpy.array(rows).reshape(-1, 3, 4)
     matrices[:, 3, 3] = 1
     placed = axes.TO_JOB @ matrices
     # What has no volume is not seen, and the job refuses it.
-    placed = placed[numpy.abs(numpy.linalg.det(placed[:, :3, :3])) > 1e-18]
+    return placed[numpy.abs(numpy.linalg.det(placed[:, :3, :3])) > 1e-18]
+
+
+def _place(context: Context, copies: _Copies) -> None:
+    """Copies as a group that is placed by a file; one by one where they are few, shine, or look different."""
+    placed = _placed(copies.matrices)
     shines = any(not values.is_constant(piece.made.emission, 0) for piece in copies.pieces)
     if len(placed) < 2 or shines:
         for matrix in placed:
             for piece in copies.pieces:
                 _add_piece(context, copies.name, piece, axes.steps(matrix), copies.is_seen)
-        return
-    if not copies.pieces:
-        return
+    elif copies.pieces:
+        _place_group(context, copies, placed)
+    for rows, pieces in copies.others:
+        for matrix in _placed([rows]):
+            for piece in pieces:
+                _add_piece(context, copies.name, piece, axes.steps(matrix), copies.is_seen)
+
+
+def _place_group(context: Context, copies: _Copies, placed: numpy.ndarray) -> None:
+    """Copies as a group, and a file of places."""
     bodies: dict[str, objects.Object] = {}
     for piece in copies.pieces:
         bodies[free_name(copies.name, bodies)] = piece.object()

@@ -6,7 +6,6 @@ from typing import Any
 
 import numpy
 
-from ...axes import array
 from ..graph import Output
 from ..translator import Inexpressible
 from .evaluator import LUMINANCE, Evaluator, computes
@@ -49,7 +48,7 @@ def _of_object(at: Evaluator, output: Output) -> Array:
 def object_info(at: Evaluator, output: Output) -> Array:
     object, kind = at.points.object(), output.socket.identifier
     if kind == "Location":
-        return array(object.matrix_world)[:3, 3]
+        return numpy.asarray(at.points.matrix())[:3, 3]  # of a copy: where that is
     if kind == "Color":
         return numpy.array(object.color[:3])
     if kind == "Alpha":
