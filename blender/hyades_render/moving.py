@@ -1,4 +1,5 @@
-"""Frames with their shutter: the scene is exported when it opens and when it closes, and joined to one job."""
+"""Frames with their shutter: the scene is exported when it opens and when it closes, for the pass Vector also at the next
+frame, and joined to one job."""
 
 from __future__ import annotations
 
@@ -26,11 +27,14 @@ class Moments:
         scene = depsgraph.scene
         frame = scene.frame_current
         position, self._shutter = shutter(scene)
-        if self._shutter == 0:
+        times = {0.0, self._shutter}
+        if depsgraph.view_layer_eval.use_pass_vector:
+            times.add(1.0)  # the layer is the way to the next frame
+        if times == {0.0}:
             self._add(frame, depsgraph)
             return
         try:
-            for time in (0.0, self._shutter):
+            for time in sorted(times):
                 _set_time(engine, frame + position * self._shutter + time)
                 self._add(frame + time, depsgraph)
         finally:
@@ -49,6 +53,8 @@ class Moments:
         return Exported(job, list(self._complaints))
 
     def _add(self, time: float, depsgraph: Any) -> None:
+        if time in self._times:
+            return  # the end of one frame is the beginning of the next
         exported = export_job(depsgraph, settings=depsgraph.scene.hyades)
         if self._jobs:
             joined_frames.share(self._jobs[-1], exported.job)

@@ -9,6 +9,7 @@ from typing import Any
 import numpy
 from hyades import Layers
 
+_CALLED = {"motion": "forward"}  # layers by what their channels are called in files
 _FAR = 1e10  # what Blender holds for the depth of the background
 
 
@@ -84,7 +85,7 @@ def values(one: Pass, layers: Layers, transparent: bool) -> numpy.ndarray | None
     elif one.name.startswith("Crypto"):
         picture = layers.get(one.name)
     else:
-        picture = layers.get(one.layer)
+        picture = layers.get(_CALLED.get(one.layer, one.layer))
     if picture is None:
         return None
     change = _CHANGES.get(one.name)

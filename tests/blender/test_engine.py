@@ -112,6 +112,28 @@ class Pictures(AddOnTest):
         self.assertAlmostEqual(float(blurred.sum()), float(sharp.sum()), delta=0.03 * float(sharp.sum()))
         self.assertEqual((self.scene.frame_current, self.scene.frame_subframe), (3, 0))
 
+    def test_the_vector_pass_is_that_of_cycles(self) -> None:
+        cube = bpy.data.objects["Cube"]
+        for frame in (1, 5):
+            cube.location = (0.2 * frame, 0.1 * frame, 0)
+            cube.keyframe_insert("location", frame=frame)
+        for curve in cube.animation_data.action.fcurves:
+            curve.keyframe_points[0].interpolation = "LINEAR"
+        self.scene.frame_set(3)
+        bpy.context.view_layer.use_pass_vector = True
+        self.scene.render.use_motion_blur = False
+        self.scene.cycles.samples, self.scene.cycles.use_denoising = 16, False
+        found = {}
+        for engine in ("CYCLES", "HYADES"):
+            self.scene.render.engine = engine
+            found[engine] = self.render(engine)["ViewLayer.Vector"]
+        moving = found["CYCLES"].any(axis=2) & found["HYADES"].any(axis=2)
+        self.assertGreater(int(moving.sum()), 200)
+        # Edges of the cube are mixed with what stands still.
+        difference = numpy.median(numpy.abs(found["CYCLES"] - found["HYADES"])[moving], axis=0)
+        size = numpy.median(numpy.abs(found["CYCLES"])[moving], axis=0)
+        self.assertTrue((difference < 0.03 * size).all(), (difference, size))
+
 
 class Ends(AddOnTest):
     def test_esc_ends_the_program_and_leaves_nothing(self) -> None:
