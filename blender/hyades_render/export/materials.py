@@ -71,12 +71,14 @@ def _translated(translator: Translator, data: Any) -> Made:
     medium = medium_of(translator, graph.find_input(output, (), "Volume"))
     has_surface = surface is not None and surface.socket.is_linked
     material = with_opacity(closure) or materials.Black()
-    if not has_surface and medium is not None:
+    glows = values.is_constant(closure.opacity, 0) and not values.is_constant(closure.emission, 0)
+    if glows or (not has_surface and medium is not None):
         material = materials.NullMaterial()
     displacement = displacement_of(translator, data, output)
     if displacement is not None and not displacement.is_real:
         add_bump(displacement, material)
         displacement = None
-    emission = values.quotient(closure.emission, values.held(closure.opacity))
+    # What is not there at all shines as much as it says.
+    emission = closure.emission if glows else values.quotient(closure.emission, values.held(closure.opacity))
     seen = (translator.uv_map, translator.color_attribute, translator.baked)
     return Made(material, emission, medium, *seen, displacement)

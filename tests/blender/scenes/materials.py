@@ -102,6 +102,16 @@ def added_shaders() -> None:
 
 
 @scene()
+def added_glow() -> None:
+    # Light that is added to what is seen through it.
+    made = material(node="ShaderNodeAddShader")
+    total = shader_of(made)
+    link(made, node(made, "ShaderNodeBsdfTransparent").outputs[0], total.inputs[0])
+    link(made, node(made, "ShaderNodeEmission", Color=(0.1, 0.5, 0.2)).outputs[0], total.inputs[1])
+    ball(made)
+
+
+@scene()
 def half_there() -> None:
     # A lamp that is there by half, in front of a matt ball.
     made = material(node="ShaderNodeMixShader", Fac=0.5)

@@ -118,6 +118,9 @@ def add_shader(translator: Translator, output: Output) -> Closure:
     only = [one for one in (first, second) if one.material is not None or not values.is_constant(one.opacity, 1)]
     if len(only) < 2:
         one = only[0] if only else Closure()
+        shines = not all(values.is_constant(other.emission, 0) for other in (first, second) if other is not one)
+        if shines and values.is_texture(one.opacity):
+            translator.complain(output.node, "where all light goes straight through, it does not shine")
         return Closure(one.material, emission, one.opacity, medium, one.mixed_opacity)
     if all(_doubled(one.material) for one in (first, second)):
         made = blend(first, second, 0.5)
