@@ -39,6 +39,17 @@ def principled_emission() -> None:
     ball(material(node="ShaderNodeBsdfPrincipled", Base_Color=0.0, Specular=0.0, Emission=(1, 0.5, 0.2), Emission_Strength=2.0))
 
 
+# Hyades' bodies scatter in another way (docs/blender.md): the colours are to be those of Cycles.
+@scene(mean=0.04, block=0.15)
+def principled_subsurface() -> None:
+    import bpy
+
+    keys = {"Base_Color": (0.7, 0.1, 0.1), "Subsurface": 0.3, "Subsurface_Radius": (0.1, 0.1, 0.1)}
+    if bpy.app.version < (4, 0):
+        keys["Subsurface_Color"] = (0.1, 0.7, 0.1)
+    ball(material(node="ShaderNodeBsdfPrincipled", Specular=0.0, **keys))
+
+
 @scene(mean=0.02, block=0.1)
 def principled_alpha() -> None:
     ball(material(node="ShaderNodeBsdfPrincipled", Base_Color=(0.8, 0.2, 0.2), Roughness=1.0, Specular=0.0, Alpha=0.4))

@@ -95,18 +95,18 @@ def sheen(translator: Translator, output: Output) -> Closure:
 def subsurface(translator: Translator, output: Output) -> Closure:
     scale = values.number(translator.constant(output.input("Scale"), 1.0))
     made = subsurface_of(
-        translator, output, output.input("Color"), output.input("Radius"), scale,
+        translator, output, translator.constant(output.input("Color"), 0.8), output.input("Radius"), scale,
         output.input("Anisotropy", "Subsurface Anisotropy"),
     )
     return Closure(materials.NullMaterial(subsurface=made))
 
 
 def subsurface_of(
-    translator: Translator, output: Output, color: Any, radius: Any, scale: float, anisotropy: Any
+    translator: Translator, output: Output, color: values.Value, radius: Any, scale: float, anisotropy: Any
 ) -> materials.Subsurface:
     """What light does within a body; radius times scale is how far it goes [m]."""
     far = [max(part * scale, 1e-6) for part in values.color(translator.constant(radius, 0.01))]
-    made = materials.Subsurface(color=held(translator.constant(color, 0.8)), radius=far)
+    made = materials.Subsurface(color=held(color), radius=far)
     g = values.number(translator.constant(anisotropy, 0.0))
     if g:
         made.g = held(g, -0.99, 0.99)

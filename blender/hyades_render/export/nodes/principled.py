@@ -126,9 +126,11 @@ def _subsurface(translator: Translator, output: Output, is_new: bool) -> Any:
         translator.complain(output.node, f"a body scatters light below its surface or not: a weight of {share:.2f} is {round(share)}")
         if share < 0.5:
             return None
-    # Up to 3.6 the weight makes the radius smaller, and the colour is one of its own.
+    # Up to 3.6 the weight makes the radius smaller, and leads from the base's colour to one of its own.
     scale = values.number(translator.constant(output.input("Subsurface Scale"), 1.0)) if is_new else share
-    color = output.input("Base Color") if is_new else output.input("Subsurface Color")
+    color = translator.constant(output.input("Base Color"), 0.8)
+    if not is_new:
+        color = values.mixed(color, translator.constant(output.input("Subsurface Color"), 0.8), held(share))
     return subsurface_of(
         translator, output, color, output.input("Subsurface Radius"), scale, output.input("Subsurface Anisotropy")
     )
