@@ -76,5 +76,18 @@ class Copies(ExportTest):
         self.assertIn("object 'Thing': its looks depend on where it is, or on the object: copies beyond 2", said)
 
 
+class NotThere(ExportTest):
+    """What jobs do not have is told by name."""
+
+    def test_hair_is_told(self) -> None:
+        cube = bpy.data.objects["Cube"]
+        cube.modifiers.new("Fur", "PARTICLE_SYSTEM")
+        cube.particle_systems[0].name = "Fur"
+        cube.particle_systems[0].settings.type = "HAIR"
+        self.assertIn("object 'Cube': the hair of 'Fur' is not supported yet", self.export()[1])
+        cube.modifiers[0].show_render = False
+        self.assertEqual(self.export()[1], "")
+
+
 if __name__ == "__main__":
     unittest.main()

@@ -76,6 +76,7 @@ def add_objects(context: Context) -> None:
                 known.matrices.append(first[:] + second[:] + third[:])
             if known is not None:
                 continue
+        _tell_of_particles(context, object)
         if instance.show_self:
             _add(context, copies, instance, object)
     for one in copies.values():
@@ -100,6 +101,15 @@ def _add(context: Context, copies: dict[Any, _Copies], instance: Any, object: An
         add_volume(context, object, axes.array(matrix))
     elif kind not in _WITHOUT:
         context.complain(f"object '{object.name}'", f"objects of type {kind.lower()} are not supported yet")
+
+
+def _tell_of_particles(context: Context, object: Any) -> None:
+    """Of an object's particles those that are shown as other things come as copies; hair does not come at all."""
+    for system in object.particle_systems:
+        settings = system.settings
+        modifier = next((one for one in object.modifiers if getattr(one, "particle_system", None) == system), None)
+        if settings.type == "HAIR" and settings.render_type == "PATH" and (modifier is None or modifier.show_render):
+            context.complain(f"object '{object.name}'", f"the hair of '{system.name}' is not supported yet; it is left out")
 
 
 def _add_another(context: Context, copies: _Copies, instance: Any, object: Any) -> bool:
