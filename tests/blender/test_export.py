@@ -79,6 +79,22 @@ class Copies(ExportTest):
 class NotThere(ExportTest):
     """What jobs do not have is told by name."""
 
+    def test_portals_do_not_shine(self) -> None:
+        lamp = bpy.data.objects["Light"]
+        lamp.data.type = "AREA"
+        self.assertIn("Light", self.export()[0].objects)
+        bpy.data.lights["Light"].cycles.is_portal = True
+        self.assertNotIn("Light", self.export()[0].objects)
+
+    def test_who_sees_lamps_and_the_world_is_told(self) -> None:
+        bpy.data.objects["Light"].visible_glossy = False
+        world = self.scene.world.cycles_visibility
+        world.diffuse = world.camera = False
+        job, said = self.export()
+        self.assertIn("light 'Light': it is there for rays of glossy too", said)
+        self.assertIn("world 'World': it is there for rays of diffuse too", said)
+        self.assertFalse(job.environment.visible_to_camera)
+
     def test_hair_is_told(self) -> None:
         cube = bpy.data.objects["Cube"]
         cube.modifiers.new("Fur", "PARTICLE_SYSTEM")

@@ -18,6 +18,7 @@ from . import axes
 from .context import Context, free_name
 from .nodes import graph, values
 from .nodes.translator import Translator
+from .visibility import tell_of_lamp
 
 _SIDES = 96
 """Corners of an ellipse; its area is that of the true one."""
@@ -52,12 +53,15 @@ class PlacedLight(NamedTuple):
 def add_light(context: Context, light: PlacedLight) -> None:
     """Adds one lamp to the job, as a light or as a body that shines."""
     data = light.object.data
+    if getattr(getattr(data, "cycles", None), "is_portal", False):
+        return  # it only says where light comes in
     color = _color(context, light)
     if data.energy < 0 or values.is_constant(color, 0):
         if data.energy < 0:
             context.complain(light.where, "light below 0 is left out")
         return
     {"POINT": _add_point, "SPOT": _add_spot, "SUN": _add_sun, "AREA": _add_area}[data.type](context, light, color)
+    tell_of_lamp(context, light.where, light.object)
     for key in ("use_shadow", "cycles.cast_shadow"):
         owner = data.cycles if key.startswith("cycles.") and hasattr(data, "cycles") else data
         if not getattr(owner, key.rpartition(".")[2], True):

@@ -19,6 +19,7 @@ from .nodes import values
 from .nodes.displacement import displaced
 from .nodes.surface import PartOfSurface
 from .places import MatrixPlaces
+from .visibility import is_seen
 from .volumes import add_volume
 
 _WITH_SURFACE = {"MESH", "CURVE", "SURFACE", "META", "FONT"}
@@ -89,12 +90,12 @@ def _add(context: Context, copies: dict[Any, _Copies], instance: Any, object: An
     if kind in _WITH_SURFACE and instance.is_instance:
         pieces = pieces_of(context, object, matrix)
         rows = tuple(axes.array(matrix)[:3].reshape(-1))
-        found = _Copies(object.name, pieces, _is_seen(context, object), [rows], [])
+        found = _Copies(object.name, pieces, is_seen(context, object), [rows], [])
         copies[_kind(object)] = found
     elif kind in _WITH_SURFACE:
-        is_seen = _is_seen(context, object)
+        seen = is_seen(context, object)
         for piece in pieces_of(context, object, matrix):
-            _add_piece(context, object.name, piece, axes.steps_to_world(matrix), is_seen)
+            _add_piece(context, object.name, piece, axes.steps_to_world(matrix), seen)
     elif kind == "LIGHT":
         add_light(context, PlacedLight(object.name, object, axes.placed(matrix)))
     elif kind == "VOLUME":
@@ -188,16 +189,6 @@ def _add_piece(context: Context, name: str, piece: Piece, transform: Any, is_see
     if not is_seen:
         body.visible_to_camera = False
     context.job.objects[free_name(name, context.job.objects)] = body
-
-
-def _is_seen(context: Context, object: Any) -> bool:
-    """Whether the camera sees an object; complains where other rays do not."""
-    rays = ("diffuse", "glossy", "transmission", "volume_scatter", "shadow")
-    hidden = [ray for ray in rays if not getattr(object, f"visible_{ray}")]
-    if hidden:
-        what = f"it is there for rays of {', '.join(hidden)} too: only the camera's can be kept from it"
-        context.complain(f"object '{object.name}'", what)
-    return bool(object.visible_camera)
 
 
 def _placed(rows: list[tuple[float, ...]]) -> numpy.ndarray:

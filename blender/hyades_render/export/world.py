@@ -15,6 +15,7 @@ from .nodes.graph import Input, Output
 from .nodes.images import image_file
 from .nodes.translator import Inexpressible, Translator
 from .nodes.volumes import medium_of
+from .visibility import is_world_seen
 
 
 _SUN = 145.0
@@ -27,15 +28,8 @@ def add_world(context: Context) -> None:
     if world is None:
         return
     context.job.environment = _environment(context, world)
-    if context.scene.render.film_transparent:
+    if not is_world_seen(context, world) or context.scene.render.film_transparent:
         context.job.environment.visible_to_camera = False
-    elif not _is_seen(world):
-        context.complain(f"world '{world.name}'", "the camera sees it: it can only be left out with a transparent film")
-
-
-def _is_seen(world: Any) -> bool:
-    cycles = getattr(world, "cycles_visibility", None)
-    return bool(getattr(cycles, "camera", True))
 
 
 def _environment(context: Context, world: Any) -> hyades.Environment:
