@@ -95,6 +95,30 @@ class NotThere(ExportTest):
         self.assertIn("world 'World': it is there for rays of diffuse too", said)
         self.assertFalse(job.environment.visible_to_camera)
 
+    def test_holdouts_and_catchers_are_told(self) -> None:
+        cube = bpy.data.objects["Cube"]
+        cube.is_holdout = cube.is_shadow_catcher = True
+        bpy.context.view_layer.layer_collection.children["Collection"].holdout = True
+        _, said = self.export()
+        self.assertIn("object 'Cube': jobs have no holdouts", said)
+        self.assertIn("object 'Cube': jobs have no shadow catchers", said)
+        self.assertIn("collection 'Collection': jobs have no holdouts", said)
+
+    def test_collections_may_be_kept_from_the_camera(self) -> None:
+        thing = bpy.data.objects.new("Thing", bpy.data.objects["Cube"].data)
+        self.collection(thing, copies=2)
+        self.assertEqual([self.export()[0].objects[name].visible_to_camera for name in ("Cube", "Thing")], [True, True])
+        shelf = bpy.data.collections.new("Shelf")
+        self.scene.collection.children.link(shelf)
+        for name in ("Cube", "Copy 1"):
+            bpy.data.objects[name].users_collection[0].objects.unlink(bpy.data.objects[name])
+            shelf.objects.link(bpy.data.objects[name])
+        bpy.context.view_layer.layer_collection.children["Shelf"].indirect_only = True
+        job, said = self.export()
+        things = [body for name, body in job.objects.items() if name.startswith("Thing")]
+        moved = {body.visible_to_camera: (body.transform[0].matrix[3] if body.transform else 0) for body in things}
+        self.assertEqual((moved, job.objects["Cube"].visible_to_camera, said), ({True: 0, False: 2}, False, ""))
+
     def test_hair_is_told(self) -> None:
         cube = bpy.data.objects["Cube"]
         cube.modifiers.new("Fur", "PARTICLE_SYSTEM")

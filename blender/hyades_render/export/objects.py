@@ -19,7 +19,7 @@ from .nodes import values
 from .nodes.displacement import displaced
 from .nodes.surface import PartOfSurface
 from .places import MatrixPlaces
-from .visibility import is_seen
+from .visibility import LayerFlags, is_seen
 from .volumes import add_volume
 
 _WITH_SURFACE = {"MESH", "CURVE", "SURFACE", "META", "FONT"}
@@ -66,12 +66,14 @@ class _Copies(NamedTuple):
 def add_objects(context: Context) -> None:
     """Adds what has a surface, and the lamps, to the job."""
     copies: dict[Any, _Copies] = {}
+    flags = LayerFlags(context)
     for instance in context.depsgraph.object_instances:
         # Blender may give the object of an instance for this step alone: all is taken from it here.
         object = instance.object
         if instance.is_instance:  # there may be millions
             data = object.data
-            known = copies.get(_kind(object)) if data is not None else None
+            is_indirect = flags.is_indirect(instance)
+            known = copies.get(_kind(object, is_indirect)) if data is not None else None
             if known is not None and not (known.looks_differ and _add_another(context, known, instance, object)):
                 first, second, third, _ = instance.matrix_world
                 known.matrices.append(first[:] + second[:] + third[:])
@@ -79,21 +81,21 @@ def add_objects(context: Context) -> None:
                 continue
         _tell_of_particles(context, object)
         if instance.show_self:
-            _add(context, copies, instance, object)
+            _add(context, copies, instance, object, flags.is_indirect(instance))
     for one in copies.values():
         _place(context, one)
 
 
-def _add(context: Context, copies: dict[Any, _Copies], instance: Any, object: Any) -> None:
+def _add(context: Context, copies: dict[Any, _Copies], instance: Any, object: Any, is_indirect: bool) -> None:
     """One object, or the first of many copies."""
     kind, matrix = object.type, instance.matrix_world
     if kind in _WITH_SURFACE and instance.is_instance:
         pieces = pieces_of(context, object, matrix)
         rows = tuple(axes.array(matrix)[:3].reshape(-1))
-        found = _Copies(object.name, pieces, is_seen(context, object), [rows], [])
-        copies[_kind(object)] = found
+        found = _Copies(object.name, pieces, is_seen(context, object) and not is_indirect, [rows], [])
+        copies[_kind(object, is_indirect)] = found
     elif kind in _WITH_SURFACE:
-        seen = is_seen(context, object)
+        seen = is_seen(context, object) and not is_indirect
         for piece in pieces_of(context, object, matrix):
             _add_piece(context, object.name, piece, axes.steps_to_world(matrix), seen)
     elif kind == "LIGHT":
@@ -125,10 +127,10 @@ def _add_another(context: Context, copies: _Copies, instance: Any, object: Any) 
     return True
 
 
-def _kind(object: Any) -> tuple[int, int]:
+def _kind(object: Any, is_indirect: bool) -> tuple[int, int, bool]:
     """What is the same for all copies of one thing. The object of an instance is one for this step alone, whose address the
     next one may have, too; the object that it stands for stays."""
-    return object.original.as_pointer(), object.data.as_pointer()
+    return object.original.as_pointer(), object.data.as_pointer(), is_indirect
 
 
 @contextmanager

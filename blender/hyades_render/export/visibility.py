@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import Any
 
 from .context import Context
@@ -15,6 +16,10 @@ def is_seen(context: Context, object: Any) -> bool:
     """Whether the camera sees an object; complains where other rays do not."""
     where = f"object '{object.name}'"
     _tell(context, where, [ray for ray in _OF_OBJECTS if not getattr(object, f"visible_{ray}")])
+    if object.is_holdout:
+        context.complain(where, "jobs have no holdouts: it is seen")
+    if object.is_shadow_catcher:
+        context.complain(where, "jobs have no shadow catchers: it is seen")
     return bool(object.visible_camera)
 
 
@@ -33,3 +38,32 @@ def is_world_seen(context: Context, world: Any) -> bool:
 def _tell(context: Context, where: str, hidden: list[str]) -> None:
     if hidden:
         context.complain(where, f"it is there for rays of {', '.join(hidden)} too: only the camera's can be kept from it")
+
+
+class LayerFlags:
+    """What collections of a view layer say of the objects in them, which the objects do not say themselves."""
+
+    def __init__(self, context: Context) -> None:
+        self._layer = context.depsgraph.view_layer_eval
+        found = list(_with_flags(self._layer.layer_collection))
+        self._any = any(one.indirect_only for one in found)
+        for one in found:
+            if one.holdout:
+                context.complain(f"collection '{one.name}'", "jobs have no holdouts: what is in it is seen")
+
+    def is_indirect(self, instance: Any) -> bool:
+        """Whether the camera does not see what an instance of the depsgraph shows; of a copy who shows it counts."""
+        if not self._any:
+            return False
+        shown_by = instance.parent if instance.is_instance else instance.object
+        return bool(shown_by.indirect_only_get(view_layer=self._layer))
+
+
+def _with_flags(collection: Any) -> Iterator[Any]:
+    """Collections of a layer that are a holdout, or are only seen indirectly."""
+    if collection.exclude:
+        return
+    if collection.holdout or collection.indirect_only:
+        yield collection
+    for child in collection.children:
+        yield from _with_flags(child)
