@@ -75,6 +75,12 @@ class Copies(ExportTest):
         self.assertEqual(len(job.objects["Thing"].places.matrices), 3)
         self.assertIn("object 'Thing': its looks depend on where it is, or on the object: copies beyond 2", said)
 
+    def test_a_view_layer_may_override_all_materials(self) -> None:
+        bpy.data.objects["Cube"].data.materials.clear()
+        bpy.context.view_layer.material_override = self.material("Clay", color=(0.25, 0.5, 0.75))[0]
+        job, _ = self.export()
+        self.assertEqual(job.objects["Cube"].material.color, [0.25, 0.5, 0.75])
+
 
 class NotThere(ExportTest):
     """What jobs do not have is told by name."""

@@ -30,6 +30,7 @@ class Context:
     def __init__(self, depsgraph: Any, settings: Any) -> None:
         self.depsgraph = depsgraph
         self.scene = depsgraph.scene_eval
+        self.override = depsgraph.view_layer_eval.material_override  # what all things are made of; None: of their own
         self.settings = settings
         self.job = hyades.Job()
         self.complaints: list[Complaint] = []

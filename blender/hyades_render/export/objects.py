@@ -161,7 +161,7 @@ def pieces_of(context: Context, object: Any, matrix: Any) -> list[Piece]:
         slots = surface.slots
         kinds = numpy.unique(slots)
         parts = [PartOfSurface(surface, slots == slot if len(kinds) > 1 else slice(None)) for slot in kinds]
-        found = [_piece(context, one, _material_in(object, int(slot))) for one, slot in zip(parts, kinds)]
+        found = [_piece(context, one, _material_in(context, object, int(slot))) for one, slot in zip(parts, kinds)]
     if is_mesh and not any(one.is_of_object for one in parts):
         context.pieces[key] = found  # objects without modifiers of their own share their mesh
     return found
@@ -179,7 +179,9 @@ def _piece(context: Context, whole: PartOfSurface, data: Any) -> Piece:
     return Piece(body, made, whole.is_of_object)
 
 
-def _material_in(object: Any, slot: int) -> Optional[Any]:
+def _material_in(context: Context, object: Any, slot: int) -> Optional[Any]:
+    if context.override is not None:
+        return context.override
     slots = object.material_slots
     # A slot that is not there stands for the last one.
     return slots[min(slot, len(slots) - 1)].material if len(slots) else None

@@ -28,7 +28,7 @@ def add_volume(context: Context, object: Any, matrix: Any) -> None:
         context.complain(where, f"there is no file {data.filepath or '(none)'}, expected .vdb or .nvdb, or a link to one")
         return
     slot = object.material_slots[0].material if len(object.material_slots) else None
-    medium = _medium(context, slot, path)
+    medium = _medium(context, context.override or slot, path)
     if medium is None:
         context.complain(where, "it has no material with a volume; it is left out")
         return
