@@ -14,6 +14,7 @@ from hyades import outputs
 
 from . import capture, joined_frames, passes, scene_job
 from .export import Complaint, Exported, export_job
+from .export.film import exposure_stops, film_exposure
 from .moving import Moments
 
 _TONE_MAPS = {"Standard": "srgb", "Raw": "linear"}  # views that need no configuration of OpenColorIO
@@ -100,13 +101,15 @@ def _outputs(scene: Any, job: hyades.Job, numbered: bool) -> tuple[list[outputs.
     image, found = scene.render.image_settings, []
     kind = image.file_format
     stem = _stem(scene, job.name, numbered and kind != "FFMPEG")
-    shown: dict[str, Any] = {"exposure": scene.view_settings.exposure}
+    shown: dict[str, Any] = {"exposure": min(max(exposure_stops(scene), -64.0), 64.0)}
     job.color = view_of(scene) if kind not in _EXR else None
     if job.color is None:
         shown["tone_map"] = _TONE_MAPS.get(scene.view_settings.view_transform, "srgb")
     found += _of_view(scene.view_settings) if kind not in _EXR else []
     see_through = scene.render.film_transparent and image.color_mode == "RGBA"
     if kind in _EXR:
+        if film_exposure(scene) != 1:
+            found.append(Complaint("film", "files of type EXR keep the light as it is: the exposure is left out"))
         layer = next(layer for layer in scene.view_layers if layer.use)
         wanted = passes.asked_for(scene, layer) if kind == "OPEN_EXR_MULTILAYER" else []
         made: outputs.Output = outputs.Exr(

@@ -14,6 +14,7 @@ import numpy
 from hyades import read_exr
 
 from . import complaints, passes, preferences, scene_job
+from .export.film import film_exposure
 from .render_process import refusal
 from .runs import FarmRun, LocalRun
 
@@ -32,6 +33,7 @@ class FinalRender:
         self._layer = depsgraph.view_layer_eval
         self._passes = passes.asked_for(self._scene, self._layer)
         self._transparent = self._scene.render.film_transparent
+        self._exposure = film_exposure(self._scene)
         self._result: Any = None
         self._told: Any = {}
         self._finished = False
@@ -133,6 +135,7 @@ class FinalRender:
         self._tell(", ".join(words))
 
     def _show(self, picture: numpy.ndarray) -> None:
+        picture[:, :, :3] *= self._exposure
         if not self._transparent:
             picture[:, :, 3] = 1
         self._fill("Combined", passes.as_pixels(picture, 4))
@@ -142,7 +145,7 @@ class FinalRender:
         """The exact pixels of all passes."""
         layers = read_exr(path)
         for one in self._passes:
-            pixels = passes.values(one, layers, self._transparent)
+            pixels = passes.values(one, layers, self._transparent, self._exposure)
             if pixels is not None:
                 self._fill(one.name, pixels)
         for field, text in passes.cryptomatte_fields(layers, self._layer.name, self._passes).items():

@@ -93,6 +93,9 @@ class HYADES_PT_film(_Panel, bpy.types.Panel):
     def draw(self, context: bpy.types.Context) -> None:
         layout, render = self.begin(), context.scene.render
         layout.prop(render, "film_transparent", text="Transparent")
+        cycles = getattr(context.scene, "cycles", None)
+        if cycles is not None:
+            layout.prop(cycles, "film_exposure")
         layout.prop(render, "filter_size")
 
 

@@ -10,6 +10,7 @@ import numpy
 from hyades import Layers
 
 _CALLED = {"motion": "forward"}  # layers by what their channels are called in files
+_NO_LIGHT = ("Albedo", "Variance")  # colours that no exposure makes brighter
 _FAR = 1e10  # what Blender holds for the depth of the background
 
 
@@ -78,16 +79,20 @@ def layers_for(passes: list[Pass]) -> list[str]:
     return list(dict.fromkeys(["beauty", "alpha", *(one.layer for one in passes)]))
 
 
-def values(one: Pass, layers: Layers, transparent: bool) -> numpy.ndarray | None:
-    """A pass as Blender holds it: (pixels, channels) of floats, the bottom row first. None: the file has it not."""
+def values(one: Pass, layers: Layers, transparent: bool, exposure: float = 1.0) -> numpy.ndarray | None:
+    """A pass as Blender holds it: (pixels, channels) of floats, the bottom row first. None: the file has it not.
+    `exposure`: by how much light is brighter than in the file."""
     if one.name == "Combined":
-        picture = combined(layers.get("denoised", layers["beauty"]), layers["alpha"], transparent)
-    elif one.name.startswith("Crypto"):
+        light = layers.get("denoised", layers["beauty"]) * numpy.float32(exposure)
+        return as_pixels(combined(light, layers["alpha"], transparent), 4)
+    if one.name.startswith("Crypto"):
         picture = layers.get(one.name)
     else:
         picture = layers.get(_CALLED.get(one.layer, one.layer))
     if picture is None:
         return None
+    if exposure != 1 and one.name not in _NO_LIGHT and one.kind == "COLOR" and not one.name.startswith("Crypto"):
+        picture = picture * numpy.float32(exposure)
     change = _CHANGES.get(one.name)
     return as_pixels(change(picture) if change else picture, len(one.channels))
 

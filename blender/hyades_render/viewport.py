@@ -11,6 +11,7 @@ import numpy
 
 from . import complaints, preferences, scene_job
 from .export import export_job
+from .export.film import film_exposure
 from .refiner import Refiner, View
 from .view_camera import camera_of
 
@@ -99,8 +100,9 @@ class Viewport:
         from gpu_extras.presets import draw_texture_2d
 
         if number != self._texture_number:
+            picture = picture.copy()
+            picture[:, :, :3] *= film_exposure(scene)
             if not scene.render.film_transparent:
-                picture = picture.copy()
                 picture[:, :, 3] = 1
             height, width = picture.shape[:2]
             pixels = numpy.ascontiguousarray(picture[::-1], numpy.float32).reshape(-1)

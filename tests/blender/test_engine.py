@@ -81,6 +81,7 @@ class Pictures(AddOnTest):
         for view, look in (("Standard", "None"), ("Filmic", "None"), ("Filmic", "High Contrast")):
             settings = self.scene.view_settings
             settings.view_transform, settings.look, settings.exposure = view, look, 0.5
+            self.scene.cycles.film_exposure = 1.5
             image.file_format, image.color_mode = "PNG", "RGB"
             self.scene.render.filepath = str(self.folder / "blender.png")
             bpy.ops.render.render(write_still=True)
@@ -89,6 +90,17 @@ class Pictures(AddOnTest):
             ours = hyades.render(job, self.folder / "ours").picture().array[:, :, :3].astype(int)
             theirs = hyades.Picture.read(self.folder / "blender.png").array[:, :, :3].astype(int)
             self.assertLessEqual(int(abs(ours - theirs).max()), 1, (view, look))
+
+    def test_film_exposure_makes_light_brighter(self) -> None:
+        layer = bpy.context.view_layer
+        layer.use_pass_environment = layer.use_pass_normal = layer.hyades.use_pass_albedo = True
+        plain = self.render("plain")
+        self.scene.cycles.film_exposure = 2.0
+        bright = self.render("bright")
+        for name, factor in (("Combined", 2), ("Env", 2), ("Albedo", 1), ("Normal", 1)):
+            a, b = (found[f"ViewLayer.{name}"][:, :, :3] for found in (plain, bright))
+            numpy.testing.assert_allclose(b, factor * a, rtol=1e-6, err_msg=name)
+        self.assertTrue((bright["ViewLayer.Combined"][:, :, 3] == 1).all())
 
     def test_denoised_pictures_keep_the_noisy_one(self) -> None:
         self.scene.hyades.denoise = "features"

@@ -125,6 +125,14 @@ class NotThere(ExportTest):
         moved = {body.visible_to_camera: (body.transform[0].matrix[3] if body.transform else 0) for body in things}
         self.assertEqual((moved, job.objects["Cube"].visible_to_camera, said), ({True: 0, False: 2}, False, ""))
 
+    def test_exposure_of_light_is_told(self) -> None:
+        self.scene.cycles.film_exposure = 2.0
+        self.scene.view_settings.exposure = 0.5
+        job, said = self.export()
+        self.assertEqual((job.outputs[0].exposure, said), (1.5, ""))
+        self.scene.render.image_settings.file_format = "OPEN_EXR"
+        self.assertIn("film: files of type EXR keep the light as it is", self.export()[1])
+
     def test_hair_is_told(self) -> None:
         cube = bpy.data.objects["Cube"]
         cube.modifiers.new("Fur", "PARTICLE_SYSTEM")

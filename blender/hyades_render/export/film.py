@@ -37,12 +37,14 @@ def picture_size(render) -> list[int]:
     return [max(int(render.resolution_x * share / 100), 1), max(int(render.resolution_y * share / 100), 1)]
 
 
-def exposure_stops(context: Context) -> float:
+def film_exposure(scene) -> float:
+    """By how much Film > Exposure makes light brighter, in files of light too."""
+    return float(getattr(getattr(scene, "cycles", None), "film_exposure", 1.0))
+
+
+def exposure_stops(scene) -> float:
     """By how many stops pictures for displays are brighter than the light."""
-    stops = float(context.scene.view_settings.exposure)
-    cycles = getattr(context.scene, "cycles", None)
-    film_exposure = getattr(cycles, "film_exposure", 1.0)
-    return stops + (math.log2(film_exposure) if film_exposure > 0 else 0.0)
+    return float(scene.view_settings.exposure) + math.log2(max(film_exposure(scene), 1e-9))
 
 
 def _filter(context: Context) -> hyades.Filter:
