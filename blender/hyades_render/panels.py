@@ -94,9 +94,13 @@ class HYADES_PT_film(_Panel, bpy.types.Panel):
         layout, render = self.begin(), context.scene.render
         layout.prop(render, "film_transparent", text="Transparent")
         cycles = getattr(context.scene, "cycles", None)
-        if cycles is not None:
-            layout.prop(cycles, "film_exposure")
-        layout.prop(render, "filter_size")
+        if cycles is None:  # the add-on Cycles is off
+            layout.prop(render, "filter_size")
+            return
+        layout.prop(cycles, "film_exposure")
+        layout.prop(cycles, "pixel_filter_type")
+        if cycles.pixel_filter_type != "BOX":
+            layout.prop(cycles, "filter_width")
 
 
 class HYADES_PT_performance(_Panel, bpy.types.Panel):

@@ -1,13 +1,14 @@
 """What the exporter makes of things in a scene: the job says the same, or it is told by name."""
 
 import unittest
+from types import SimpleNamespace
 from unittest import mock
 
 import bpy
 import hyades
 from addon import AddOnTest
 
-from hyades_render import animation
+from hyades_render import animation, panels
 from hyades_render.export import objects
 
 
@@ -80,6 +81,15 @@ class Copies(ExportTest):
         bpy.context.view_layer.material_override = self.material("Clay", color=(0.25, 0.5, 0.75))[0]
         job, _ = self.export()
         self.assertEqual(job.objects["Cube"].material.color, [0.25, 0.5, 0.75])
+
+    def test_the_panel_shows_the_filter_that_is_used(self) -> None:
+        shown = []
+        layout = SimpleNamespace(prop=lambda owner, name, **_: shown.append((owner, name)))
+        panel = SimpleNamespace(begin=lambda: layout)
+        panels.HYADES_PT_film.draw(panel, SimpleNamespace(scene=self.scene))
+        (owner,) = [owner for owner, name in shown if name == "filter_width"]
+        owner.filter_width = 3.0
+        self.assertEqual(self.export()[0].film.filter.radius, 1.5)
 
 
 class NotThere(ExportTest):
