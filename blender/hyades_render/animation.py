@@ -12,13 +12,13 @@ import bpy
 import hyades
 from hyades import outputs
 
-from . import capture, joined_frames, passes, scene_job
+from . import capture, joined_frames, movement, passes, scene_job
 from .export import Complaint, Exported, export_job
 from .export.film import exposure_stops, film_exposure
 from .moving import Moments
 
 _TONE_MAPS = {"Standard": "srgb", "Raw": "linear"}  # views that need no configuration of OpenColorIO
-_LOOKS = 5  # frames that tell whether anything moves
+_LOOKS = 5  # frames that tell whether anything moves, mostly
 _EXR = ("OPEN_EXR", "OPEN_EXR_MULTILAYER")
 
 
@@ -43,22 +43,30 @@ def all_frames(scene: Any) -> range:
 
 
 def moving_frames(scene: Any) -> range | None:
-    """All frames of a scene, None where the first, the last and some between are alike: it is a picture."""
+    """All frames of a scene, None where they are alike: it is a picture. A few are looked at; all, where something is
+    animated, driven or simulated that may move between those."""
     frames = all_frames(scene)
-    looks = sorted({frames[len(frames) * part // (_LOOKS - 1) - (part == _LOOKS - 1)] for part in range(_LOOKS)})
+    some = sorted({frames[len(frames) * part // (_LOOKS - 1) - (part == _LOOKS - 1)] for part in range(_LOOKS)})
     before = scene.frame_current, scene.frame_subframe
-    first = None
     try:
-        for frame in looks:
+        scene.frame_set(some[0])
+        first, may_move = capture.look_at_final(scene, _looked_at)
+        rest = [frame for frame in frames if frame not in some] if may_move else []
+        for frame in [*some[1:], *rest]:
             scene.frame_set(frame)
-            job = capture.look_at_final(scene, _job_now)
-            job.frames = None
-            if first is not None and not joined_frames.alike(first, job):
+            if not joined_frames.alike(first, capture.look_at_final(scene, _looked_at)[0]):
                 return frames
-            first = job
     finally:
         scene.frame_set(before[0], subframe=before[1])
     return None
+
+
+def still_note(scene: Any) -> str:
+    """What is told of a scene in which nothing moves; empty where it has one frame."""
+    frames = all_frames(scene)
+    if len(frames) < 2:
+        return ""
+    return f"scene '{scene.name}': nothing moves in frames {text_of(frames)}: one picture of frame {scene.frame_current} is made"
 
 
 def text_of(frames: range) -> str:
@@ -68,8 +76,11 @@ def text_of(frames: range) -> str:
     return f"{frames.start}-{frames.stop - 1}" + (f"x{frames.step}" if frames.step > 1 else "")
 
 
-def _job_now(_engine: Any, depsgraph: Any) -> hyades.Job:
-    return export_job(depsgraph, settings=depsgraph.scene.hyades).job
+def _looked_at(_engine: Any, depsgraph: Any) -> tuple[hyades.Job, bool]:
+    """The scene at one frame, which the job does not say; whether it may be another one at others."""
+    job = export_job(depsgraph, settings=depsgraph.scene.hyades).job
+    job.frames = None
+    return job, movement.may_move(depsgraph)
 
 
 def _steps(scene: Any, frames: range, numbered: bool, name: str) -> Generator[Any, None, None]:

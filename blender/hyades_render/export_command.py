@@ -45,7 +45,8 @@ def export(folder: Path, frames: str) -> list:
     chosen = _frames(frames) if frames else animation.moving_frames(scene)
     exported = animation.job_of(scene, frames=chosen, name=Path(bpy.data.filepath).stem)
     exported.job.write(folder / "job.yaml")
-    return exported.complaints
+    note = animation.still_note(scene) if chosen is None else ""
+    return [*exported.complaints, *([note] if note else [])]
 
 
 def _frames(text: str) -> range:

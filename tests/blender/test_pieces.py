@@ -247,6 +247,21 @@ class Scenes(AddOnTest):
         cube.keyframe_insert("location", frame=250)
         self.assertEqual(animation.moving_frames(self.scene), range(1, 251))
 
+    def test_what_moves_for_a_moment_is_no_still_scene(self) -> None:
+        cube = bpy.data.objects["Cube"]
+        self.scene.frame_start, self.scene.frame_end = 1, 40
+        for frame, place in ((1, 0.0), (14, 0.0), (15, 1.0), (16, 0.0)):
+            cube.location.z = place
+            cube.keyframe_insert("location", frame=frame)
+        self.assertEqual(animation.moving_frames(self.scene), range(1, 41))
+        cube.animation_data_clear()
+        # A driver alone moves nothing.
+        cube.driver_add("location", 2).driver.expression = "1.5"
+        self.assertIsNone(animation.moving_frames(self.scene))
+        self.assertIn("nothing moves in frames 1-40: one picture of frame 1 is made", animation.still_note(self.scene))
+        cube.driver_add("location", 2).driver.expression = "frame == 12"
+        self.assertEqual(animation.moving_frames(self.scene), range(1, 41))
+
     def test_the_panel_takes_whatever_a_job_may_say(self) -> None:
         """A timer brings it, which an exception would end."""
         for whole, number in (((1 << 64) - 1, float("inf")), (1 - (1 << 64), float("-inf")), (0, float("nan"))):
