@@ -19,6 +19,7 @@ from .moving import Moments
 
 _TONE_MAPS = {"Standard": "srgb", "Raw": "linear"}  # views that need no configuration of OpenColorIO
 _LOOKS = 5  # frames that tell whether anything moves, mostly
+_PLAIN_COMPOSITE = {"R_LAYERS", "COMPOSITE", "VIEWER", "SPLITVIEWER", "FRAME", "REROUTE"}
 _EXR = ("OPEN_EXR", "OPEN_EXR_MULTILAYER")
 
 
@@ -136,7 +137,24 @@ def _outputs(scene: Any, job: hyades.Job, numbered: bool) -> tuple[list[outputs.
         if kind not in ("PNG", "FFMPEG"):
             found.append(Complaint("output", f"files of type {kind} are not written; PNG is"))
         made = outputs.Png(file=stem + ".png", transparent=see_through, bits=_bits(image), **shown)
-    return [made], found
+    return [made], found + _after_render(scene)
+
+
+def _after_render(scene: Any) -> list[Complaint]:
+    """What Blender would make of a scene besides the picture of its first view layer."""
+    render, found = scene.render, []
+    layers = [layer.name for layer in scene.view_layers if layer.use]
+    if len(layers) > 1:
+        others = ", ".join(f"'{name}'" for name in layers[1:])
+        found.append(Complaint("output", f"view layer '{layers[0]}' is rendered; {others} left out"))
+    nodes = scene.node_tree.nodes if scene.use_nodes and scene.node_tree is not None else ()
+    if render.use_compositing and any(node.type not in _PLAIN_COMPOSITE and not node.mute for node in nodes):
+        found.append(Complaint("output", "nodes of the compositor are left out"))
+    if render.use_sequencer and scene.sequence_editor is not None and len(scene.sequence_editor.sequences):
+        found.append(Complaint("output", "strips of the sequencer are left out: the scene is rendered"))
+    if render.use_multiview:
+        found.append(Complaint("output", "stereo and multiple views are left out: the camera's own view is rendered"))
+    return found
 
 
 def view_of(scene: Any) -> hyades.ColorManagement | None:

@@ -197,6 +197,11 @@ class Ends(AddOnTest):
             bpy.ops.render.render()
         self.assertIn("material 'Floor': is not what it seems", [str(one) for one in complaints.of(self.scene)])
 
+    def test_stereo_is_told(self) -> None:
+        self.scene.render.use_multiview = True
+        bpy.ops.render.render()
+        self.assertIn("scene: stereo and multiple views are not supported", str(complaints.of(self.scene)[0]))
+
     def test_pictures_come_while_it_is_rendered(self) -> None:
         """As the window shows them, which is not there in the background."""
         self.scene.hyades.samples = 64

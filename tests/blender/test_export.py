@@ -143,6 +143,18 @@ class NotThere(ExportTest):
         self.scene.render.image_settings.file_format = "OPEN_EXR"
         self.assertIn("film: files of type EXR keep the light as it is", self.export()[1])
 
+    def test_what_follows_a_render_is_told(self) -> None:
+        self.scene.use_nodes = True
+        self.assertEqual(self.export()[1], "")  # nodes as they are at first do nothing
+        self.scene.node_tree.nodes.new("CompositorNodeBlur")
+        self.scene.view_layers.new("Back")
+        self.scene.render.use_multiview = True
+        said = self.export()[1]
+        for what in ("view layer 'ViewLayer' is rendered; 'Back' left out", "nodes of the compositor", "stereo"):
+            self.assertIn(f"output: {what}", said)
+        self.scene.render.use_compositing = False
+        self.assertNotIn("compositor", self.export()[1])
+
     def test_hair_is_told(self) -> None:
         cube = bpy.data.objects["Cube"]
         cube.modifiers.new("Fur", "PARTICLE_SYSTEM")

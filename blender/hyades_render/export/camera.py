@@ -19,6 +19,8 @@ def add_camera(context: Context) -> None:
     if camera is None:
         context.complain("scene", "there is no camera")
         return
+    if context.scene.render.use_multiview:
+        context.complain("scene", "stereo and multiple views are not supported: the camera's own view is rendered")
     context.job.camera = translated(context, camera)
 
 
