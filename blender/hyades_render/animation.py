@@ -124,9 +124,11 @@ def _outputs(scene: Any, job: hyades.Job, numbered: bool) -> tuple[list[outputs.
             found.append(Complaint("film", "files of type EXR keep the light as it is: the exposure is left out"))
         layer = next(layer for layer in scene.view_layers if layer.use)
         wanted = passes.asked_for(scene, layer) if kind == "OPEN_EXR_MULTILAYER" else []
-        made: outputs.Output = outputs.Exr(
-            file=stem + ".exr", layers=passes.layers_for(wanted), half=image.color_depth == "16"
-        )
+        layers = passes.layers_for(wanted)
+        if not scene.render.film_transparent:
+            layers.remove("alpha")
+        made: outputs.Output = outputs.Exr(file=stem + ".exr", layers=layers, half=image.color_depth == "16")
+        found += _of_axes(layers)
     elif kind == "JPEG":
         made = outputs.Jpg(file=stem + ".jpg", quality=max(image.quality, 1), **shown)
     elif kind == "TIFF":
@@ -154,6 +156,18 @@ def _after_render(scene: Any) -> list[Complaint]:
         found.append(Complaint("output", "strips of the sequencer are left out: the scene is rendered"))
     if render.use_multiview:
         found.append(Complaint("output", "stereo and multiple views are left out: the camera's own view is rendered"))
+    return found
+
+
+def _of_axes(layers: list[str]) -> list[Complaint]:
+    """What of an EXR differs from that of F12, which is turned when it comes to Blender."""
+    found = []
+    turned = [name for name in ("position", "normal") if name in layers]
+    if turned:
+        words = f"{' and '.join(turned)} of EXR files are those of the job, where y is up: x, z, -y of Blender's"
+        found.append(Complaint("output", words))
+    if "depth" in layers:
+        found.append(Complaint("output", "depth of EXR files is infinite where there is nothing, not 1e10"))
     return found
 
 

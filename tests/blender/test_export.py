@@ -155,6 +155,19 @@ class NotThere(ExportTest):
         self.scene.render.use_compositing = False
         self.assertNotIn("compositor", self.export()[1])
 
+    def test_layers_of_files_that_differ_are_told(self) -> None:
+        layer, image = bpy.context.view_layer, self.scene.render.image_settings
+        layer.use_pass_normal, layer.use_pass_z = True, True
+        image.file_format = "OPEN_EXR_MULTILAYER"
+        job, said = self.export()
+        self.assertEqual(job.outputs[0].layers, ["beauty", "depth", "normal"])
+        self.assertIn("output: normal of EXR files are those of the job, where y is up: x, z, -y of Blender's", said)
+        self.assertIn("output: depth of EXR files is infinite where there is nothing, not 1e10", said)
+        image.file_format = "OPEN_EXR"
+        self.scene.render.film_transparent = True
+        job, said = self.export()
+        self.assertEqual((job.outputs[0].layers, said), (["beauty", "alpha"], ""))
+
     def test_hair_is_told(self) -> None:
         cube = bpy.data.objects["Cube"]
         cube.modifiers.new("Fur", "PARTICLE_SYSTEM")
