@@ -13,7 +13,7 @@ import hyades
 from hyades import outputs
 
 from . import capture, joined_frames, movement, passes, scene_job
-from .export import Complaint, Exported, export_job
+from .export import Complaint, Exported, Names, export_job
 from .export.film import exposure_stops, film_exposure
 from .moving import Moments
 
@@ -99,7 +99,8 @@ def _steps(scene: Any, frames: range, numbered: bool, name: str) -> Generator[An
     job.name = scene_job.job_name(name)
     scene_job.apply_settings(job, scene.hyades)
     job.outputs, more = _outputs(scene, job, numbered)
-    yield Exported(job, [*exported.complaints, *more])
+    more += _of_mattes(job.outputs[0], exported.names)
+    yield Exported(job, [*exported.complaints, *more], exported.names)
 
 
 def output_folder(scene: Any) -> Path:
@@ -156,6 +157,16 @@ def _after_render(scene: Any) -> list[Complaint]:
         found.append(Complaint("output", "strips of the sequencer are left out: the scene is rendered"))
     if render.use_multiview:
         found.append(Complaint("output", "stereo and multiple views are left out: the camera's own view is rendered"))
+    return found
+
+
+def _of_mattes(made: outputs.Output, names: Names) -> list[Complaint]:
+    """Whether Cryptomattes of a file are called otherwise than in Blender."""
+    found = []
+    for layer, known in (("crypto_object", names.objects), ("crypto_material", names.materials)):
+        other = next((f"'{name}' is '{ours}'" for ours, name in known.items() if ours != name), None)
+        if other is not None and isinstance(made, outputs.Exr) and layer in made.layers:
+            found.append(Complaint("output", f"{layer} of EXR files has the job's names: {other}"))
     return found
 
 

@@ -13,7 +13,8 @@ import hyades
 import numpy
 from hyades import read_exr
 
-from . import complaints, passes, preferences, scene_job
+from . import complaints, cryptomatte, passes, preferences, scene_job
+from .export import Names
 from .export.film import film_exposure
 from .render_process import refusal
 from .runs import FarmRun, LocalRun
@@ -36,6 +37,7 @@ class FinalRender:
         self._exposure = film_exposure(self._scene)
         self._result: Any = None
         self._told: Any = {}
+        self._names = Names()
         self._finished = False
 
     def run(self) -> None:
@@ -66,6 +68,7 @@ class FinalRender:
 
     def _export(self) -> Any:
         exported = scene_job.scene_job(self._engine, self._depsgraph, passes.layers_for(self._passes))
+        self._names = exported.names
         if self._engine.is_preview:
             exported.job.sampling = hyades.Sampling(samples=_PREVIEW_SAMPLES)
             exported.job.integrator = None
@@ -144,11 +147,12 @@ class FinalRender:
     def _finish(self, path: Path) -> None:
         """The exact pixels of all passes."""
         layers = read_exr(path)
+        cryptomatte.rename(layers, self._names)
         for one in self._passes:
             pixels = passes.values(one, layers, self._transparent, self._exposure)
             if pixels is not None:
                 self._fill(one.name, pixels)
-        for field, text in passes.cryptomatte_fields(layers, self._layer.name, self._passes).items():
+        for field, text in cryptomatte.fields(layers, self._layer.name, passes.cryptomattes(self._passes)).items():
             self._engine.get_result().stamp_data_add_field(field, text)
         self._finished = True
         self._engine.update_progress(1.0)

@@ -8,7 +8,7 @@ from typing import Any
 import hyades
 
 from . import joined_frames
-from .export import Complaint, Exported, export_job
+from .export import Complaint, Exported, Names, export_job
 
 _POSITIONS = {"START": 0.0, "CENTER": -0.5, "END": -1.0}
 
@@ -20,6 +20,7 @@ class Moments:
         self._times: list[float] = []
         self._jobs: list[hyades.Job] = []
         self._complaints: list[Complaint] = []
+        self._names = Names()
         self._shutter = 0.0
 
     def export(self, engine: Any, depsgraph: Any) -> None:
@@ -50,7 +51,7 @@ class Moments:
         job.frames = hyades.Frames(range=frames, fps=job.frames.fps, shutter=self._shutter)
         for complaint in complaints:
             self._complain(complaint.where, complaint.what)
-        return Exported(job, list(self._complaints))
+        return Exported(job, list(self._complaints), self._names)
 
     def _add(self, time: float, depsgraph: Any) -> None:
         if time in self._times:
@@ -60,6 +61,8 @@ class Moments:
             joined_frames.share(self._jobs[-1], exported.job)
         self._times.append(time)
         self._jobs.append(exported.job)
+        self._names.objects |= exported.names.objects
+        self._names.materials |= exported.names.materials
         for complaint in exported.complaints:
             self._complain(complaint.where, complaint.what)
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import zlib
 from dataclasses import dataclass
 from typing import Any
 
@@ -126,19 +125,9 @@ def fill(render_pass: Any, pixels: numpy.ndarray) -> None:
     render_pass.rect = pixels.tolist()
 
 
-def cryptomatte_fields(layers: Layers, view_layer: str, passes: list[Pass]) -> dict[str, str]:
-    """What a file has to say of the Cryptomattes in it, for RenderResult.stamp_data_add_field()."""
-    asked = {one.name[:-2] for one in passes if one.name.startswith("Crypto")}
-    fields = {}
-    for key, name in layers.attributes.items():
-        if not (key.startswith("cryptomatte/") and key.endswith("/name") and name in asked):
-            continue
-        theirs = f"{view_layer}.{name}"
-        ours = f"cryptomatte/{zlib.crc32(theirs.encode()):08x}"[:-1]  # any 7 digits that no other layer has
-        fields[f"{ours}/name"] = theirs
-        for what in ("hash", "conversion", "manifest"):
-            fields[f"{ours}/{what}"] = layers.attributes.get(key[: -len("name")] + what, "")
-    return fields
+def cryptomattes(passes: list[Pass]) -> set[str]:
+    """What the Cryptomattes among passes are called, without their ranks."""
+    return {one.name[:-2] for one in passes if one.name.startswith("Crypto")}
 
 
 def _depth(picture: numpy.ndarray) -> numpy.ndarray:

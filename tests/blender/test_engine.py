@@ -1,5 +1,6 @@
 """F12 in Blender: pictures and passes, borders, Esc, refused scenes, motion blur."""
 
+import json
 import pathlib
 import time
 import unittest
@@ -145,6 +146,45 @@ class Pictures(AddOnTest):
         difference = numpy.median(numpy.abs(found["CYCLES"] - found["HYADES"])[moving], axis=0)
         size = numpy.median(numpy.abs(found["CYCLES"])[moving], axis=0)
         self.assertTrue((difference < 0.03 * size).all(), (difference, size))
+
+    def test_cryptomattes_are_those_of_cycles(self) -> None:
+        """Whatever jobs call things, and of how many parts and copies they are."""
+        cube = bpy.data.objects["Cube"]
+        cube.name, cube.location.x = "Würfel", -1.2
+        cube.data.materials[0].name = "Grün"
+        cube.data.materials.append(bpy.data.materials.new("Rot"))
+        for face in cube.data.polygons:
+            face.material_index = int(face.normal.z > 0.5)
+        kit = bpy.data.collections.new("Kit")
+        kit.objects.link(bpy.data.objects.new("Teil", cube.data))
+        for at in range(2):
+            empty = bpy.data.objects.new("Copy", None)
+            empty.instance_type, empty.instance_collection = "COLLECTION", kit
+            empty.location = (1.5, 3 * at, 0)
+            self.scene.collection.objects.link(empty)
+        layer = bpy.context.view_layer
+        layer.use_pass_cryptomatte_object = layer.use_pass_cryptomatte_material = True
+        self.scene.cycles.samples, self.scene.cycles.use_denoising = 16, False
+        found = {}
+        for engine in ("CYCLES", "HYADES"):
+            self.scene.render.engine = engine
+            found[engine] = self.render(engine)
+        for kind, names in (("Object", ("Würfel", "Teil")), ("Material", ("Grün", "Rot"))):
+            code, theirs, ours = {}, {}, {}
+            for engine, said in (("CYCLES", theirs), ("HYADES", ours)):
+                attributes = found[engine].attributes
+                key = next(k for k, v in attributes.items() if k.endswith("/name") and v == f"ViewLayer.Crypto{kind}")
+                code[engine] = json.loads(attributes[key[: -len("name")] + "manifest"])
+                ranks = [found[engine][f"ViewLayer.Crypto{kind}0{rank}"] for rank in range(3)]
+                # Cycles calls its channels r, g, b, a, which are read by the alphabet.
+                pairs = numpy.concatenate([rank[:, :, ::-1] if engine == "CYCLES" else rank for rank in ranks], axis=2)
+                for name in names:
+                    number = numpy.array(int(code[engine][name], 16), "uint32").view("float32")
+                    said[name] = float((pairs[:, :, 1::2] * (pairs[:, :, 0::2] == number)).sum())
+            for name in names:
+                self.assertEqual(code["CYCLES"][name], code["HYADES"][name])
+                self.assertGreater(theirs[name], 30)
+                self.assertAlmostEqual(ours[name], theirs[name], delta=0.05 * theirs[name])
 
 
 class Ends(AddOnTest):

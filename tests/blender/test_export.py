@@ -163,6 +163,10 @@ class NotThere(ExportTest):
         self.assertEqual(job.outputs[0].layers, ["beauty", "depth", "normal"])
         self.assertIn("output: normal of EXR files are those of the job, where y is up: x, z, -y of Blender's", said)
         self.assertIn("output: depth of EXR files is infinite where there is nothing, not 1e10", said)
+        layer.use_pass_cryptomatte_object = True
+        self.assertNotIn("crypto", self.export()[1])
+        bpy.data.objects["Cube"].name = "Würfel"
+        self.assertIn("crypto_object of EXR files has the job's names: 'Würfel' is 'W_rfel'", self.export()[1])
         image.file_format = "OPEN_EXR"
         self.scene.render.film_transparent = True
         job, said = self.export()

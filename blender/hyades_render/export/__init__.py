@@ -5,18 +5,18 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 import hyades
 
 from .camera import add_camera
-from .context import Complaint, Context
+from .context import Complaint, Context, Names
 from .film import add_film
 from .objects import add_objects
 from .world import add_world
 
-__all__ = ["Complaint", "Exported", "export_job"]
+__all__ = ["Complaint", "Exported", "Names", "export_job"]
 
 
 @dataclass(frozen=True)
@@ -25,6 +25,7 @@ class Exported:
 
     job: hyades.Job
     complaints: list[Complaint]
+    names: Names = field(default_factory=Names)
 
 
 def export_job(depsgraph: Any, *, settings: Any = None) -> Exported:
@@ -38,4 +39,4 @@ def export_job(depsgraph: Any, *, settings: Any = None) -> Exported:
     add_camera(context)
     add_objects(context)
     add_world(context)
-    return Exported(context.job, context.complaints)
+    return Exported(context.job, context.complaints, context.names)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 import hyades
@@ -24,6 +24,14 @@ class Complaint:
         return f"{self.where}: {self.what}"
 
 
+@dataclass
+class Names:
+    """What things of a job are called in Blender, by their names in the job."""
+
+    objects: dict[str, str] = field(default_factory=dict)
+    materials: dict[str, str] = field(default_factory=dict)
+
+
 class Context:
     """One export of one depsgraph."""
 
@@ -33,9 +41,20 @@ class Context:
         self.override = depsgraph.view_layer_eval.material_override  # what all things are made of; None: of their own
         self.settings = settings
         self.job = hyades.Job()
+        self.names = Names()
         self.complaints: list[Complaint] = []
         self.materials: dict[Any, Any] = {}  # translated ones, by what they depend on
         self.pieces: dict[Any, Any] = {}  # parts of meshes, by the data and materials that several objects have
+
+    def add_object(self, name: str, body: Any) -> None:
+        """Adds an object to the job, called like `name`."""
+        ours = free_name(name, self.job.objects)
+        self.job.objects[ours], self.names.objects[ours] = body, name
+
+    def add_material(self, name: str, material: Any) -> None:
+        """Adds a material to the job, called like `name`."""
+        ours = free_name(name, self.job.materials)
+        self.job.materials[ours], self.names.materials[ours] = material, name
 
     def complain(self, where: str, what: str) -> None:
         """Notes a difference once."""

@@ -95,7 +95,7 @@ def _add(context: Context, light: PlacedLight, made: lights.Light) -> None:
 def _add_body(context: Context, light: PlacedLight, body: objects.Object) -> None:
     """A lamp that has a size, which the camera does not see."""
     body.visible_to_camera = False
-    context.job.objects[free_name(light.name, context.job.objects)] = body
+    context.add_object(light.name, body)
 
 
 def _add_point(context: Context, light: PlacedLight, color: Any) -> None:

@@ -7,7 +7,7 @@ from typing import Any, Optional
 
 from hyades import materials, media
 
-from .context import Context, free_name
+from .context import Context
 from .nodes import bsdfs, native, principled  # noqa: F401  (they register)
 from .nodes import graph, values
 from .nodes.closures import closure_of, with_opacity
@@ -22,7 +22,7 @@ from .nodes.volumes import medium_of
 class Made:
     """What a slot of an object is made of."""
 
-    material: Optional[materials.Material]
+    material: materials.Material
     emission: Value
     """Radiance [W/(m² sr)]; 0: it does not shine."""
     interior: Optional[media.Medium]
@@ -41,21 +41,16 @@ def material_of(context: Context, part: PartOfSurface, data: Any) -> Made:
         return context.materials[name]
     if data is None:
         made = Made(materials.Lambert(color=0.8), 0.0, None, None, None, False)
-        _named(context, "default", made.material)
+        context.add_material("default", made.material)
         context.materials[name] = made
         return made
     translator = Translator(context, f"material '{data.name}'", part)
     translator.material = data
     made = _translated(translator, data)
-    _named(context, data.name, made.material)
+    context.add_material(data.name, made.material)
     if not translator.is_of_surface:
         context.materials[name] = made
     return made
-
-
-def _named(context: Context, name: str, material: Optional[materials.Material]) -> None:
-    if material is not None:
-        context.job.materials[free_name(name, context.job.materials)] = material
 
 
 def _translated(translator: Translator, data: Any) -> Made:

@@ -192,7 +192,7 @@ def _add_piece(context: Context, name: str, piece: Piece, transform: Any, is_see
     body.transform = transform
     if not is_seen:
         body.visible_to_camera = False
-    context.job.objects[free_name(name, context.job.objects)] = body
+    context.add_object(name, body)
 
 
 def _placed(rows: list[tuple[float, ...]]) -> numpy.ndarray:
@@ -231,4 +231,4 @@ def _place_group(context: Context, copies: _Copies, placed: numpy.ndarray) -> No
     instance = objects.Instance(instance=group, places=MatrixPlaces(placed))
     if not copies.is_seen:
         instance.visible_to_camera = False
-    context.job.objects[free_name(copies.name, context.job.objects)] = instance
+    context.add_object(copies.name, instance)

@@ -10,7 +10,7 @@ import numpy
 from hyades import materials, media, objects
 
 from . import axes
-from .context import Context, free_name
+from .context import Context
 from .files import may_be_sent
 from .nodes import graph, values
 from .nodes.graph import Output
@@ -34,7 +34,7 @@ def add_volume(context: Context, object: Any, matrix: Any) -> None:
         return
     box = objects.Mesh(mesh=_box(object.bound_box), material=materials.NullMaterial(), interior=medium)
     box.transform = axes.steps(axes.placed(matrix))
-    context.job.objects[free_name(object.name, context.job.objects)] = box
+    context.add_object(object.name, box)
 
 
 def _file(context: Context, data: Any) -> Optional[str]:
