@@ -1,5 +1,6 @@
 """What the exporter makes of things in a scene: the job says the same, or it is told by name."""
 
+import math
 import unittest
 from types import SimpleNamespace
 from unittest import mock
@@ -171,6 +172,25 @@ class NotThere(ExportTest):
         self.scene.render.film_transparent = True
         job, said = self.export()
         self.assertEqual((job.outputs[0].layers, said), (["beauty", "alpha"], ""))
+
+    def test_what_the_camera_would_clip_is_told(self) -> None:
+        bpy.ops.mesh.primitive_plane_add(size=1000, location=(0, 0, -1))
+        self.scene.camera.location, self.scene.camera.rotation_euler = (0, -11, 2), (math.pi / 2, 0, 0)
+        lens = self.scene.camera.data  # 11 m before the cube, 3 m above the plane
+        lens.clip_start, lens.clip_end = 1, 2000
+        self.assertEqual(self.export()[1], "")
+        lens.clip_end = 100
+        said = "camera 'Camera': jobs clip nothing: 'Plane' is seen, farther away than its clip end of 100 m"
+        self.assertEqual(self.export()[1], said)
+        bpy.data.objects["Plane"].visible_camera = False
+        self.assertEqual(self.export()[1], "")
+        lens.clip_start = 11
+        said = "camera 'Camera': jobs clip nothing: 'Cube' is seen, nearer than its clip start of 11 m"
+        self.assertEqual(self.export()[1], said)
+        lens.clip_start, bpy.data.objects["Cube"].location = 1, (0, -60, 0)  # behind it
+        self.assertEqual(self.export()[1], "")
+        lens.type = "ORTHO"
+        self.assertEqual(self.export()[1], "")
 
     def test_hair_is_told(self) -> None:
         cube = bpy.data.objects["Cube"]

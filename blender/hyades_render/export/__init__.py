@@ -11,6 +11,7 @@ from typing import Any
 import hyades
 
 from .camera import add_camera
+from .clipping import tell_of_clipping
 from .context import Complaint, Context, Names
 from .film import add_film
 from .objects import add_objects
@@ -39,4 +40,5 @@ def export_job(depsgraph: Any, *, settings: Any = None) -> Exported:
     add_camera(context)
     add_objects(context)
     add_world(context)
+    tell_of_clipping(context)
     return Exported(context.job, context.complaints, context.names)
