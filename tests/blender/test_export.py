@@ -92,6 +92,16 @@ class Copies(ExportTest):
         owner.filter_width = 3.0
         self.assertEqual(self.export()[0].film.filter.radius, 1.5)
 
+    def test_images_without_alpha_are_there_everywhere(self) -> None:
+        made, shader = self.material("Leaf", "ShaderNodeBsdfTransparent")
+        texture = made.node_tree.nodes.new("ShaderNodeTexImage")
+        made.node_tree.links.new(texture.outputs["Alpha"], shader.inputs[0])
+        texture.image = bpy.data.images.new("Leaf", 4, 4, alpha=True)
+        bpy.data.objects["Cube"].data.materials[0] = made
+        for mode, kind in (("STRAIGHT", hyades.textures.Texture), ("NONE", float)):
+            texture.image.alpha_mode = mode
+            self.assertIsInstance(self.export()[0].objects["Cube"].material.opacity, kind)
+
 
 class NotThere(ExportTest):
     """What jobs do not have is told by name."""

@@ -36,6 +36,8 @@ def image(translator: Translator, output: Output) -> Value:
     node = output.node
     if node.image is None:
         return (1.0, 0.0, 1.0) if output.socket.identifier != "Alpha" else 1.0
+    if output.socket.identifier == "Alpha" and node.image.alpha_mode == "NONE":
+        return 1.0
     if node.projection != "FLAT":
         raise Inexpressible(output, f"the projection {node.projection.lower()} is not supported")
     found = image_file(translator, node, output)

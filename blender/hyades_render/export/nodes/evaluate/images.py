@@ -70,6 +70,8 @@ def image_texture(at: Evaluator, output: Output) -> Array:
         raise Inexpressible(output, "there is no image")
     if node.image.source not in ("FILE", "GENERATED"):
         raise Inexpressible(output, f"images of source {node.image.source.lower()} cannot be computed")
+    if output.socket.identifier == "Alpha" and node.image.alpha_mode == "NONE":
+        return numpy.asarray(1.0)
     place = numpy.atleast_2d(at.place(output, uv=True))
     if node.projection != "FLAT":
         raise Inexpressible(output, f"the projection {node.projection.lower()} is not supported here")
