@@ -85,7 +85,7 @@ def _looked_at(_engine: Any, depsgraph: Any) -> tuple[hyades.Job, bool]:
 
 
 def _steps(scene: Any, frames: range, numbered: bool, name: str) -> Generator[Any, None, None]:
-    moments = Moments()
+    moments = Moments(many=len(frames) > 1)
     before = scene.frame_current, scene.frame_subframe
     try:
         for number, frame in enumerate(frames, start=1):

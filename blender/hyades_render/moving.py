@@ -7,7 +7,7 @@ from typing import Any
 
 import hyades
 
-from . import joined_frames
+from . import joined_frames, moving_copies
 from .export import Complaint, Exported, Names, export_job
 
 _POSITIONS = {"START": 0.0, "CENTER": -0.5, "END": -1.0}
@@ -16,7 +16,9 @@ _POSITIONS = {"START": 0.0, "CENTER": -0.5, "END": -1.0}
 class Moments:
     """What was exported so far, of one frame or many."""
 
-    def __init__(self) -> None:
+    def __init__(self, *, many: bool = False) -> None:
+        """`many`: there will be more frames than one."""
+        self._many = many
         self._times: list[float] = []
         self._jobs: list[hyades.Job] = []
         self._complaints: list[Complaint] = []
@@ -32,31 +34,38 @@ class Moments:
         if depsgraph.view_layer_eval.use_pass_vector:
             times.add(1.0)  # the layer is the way to the next frame
         if times == {0.0}:
-            self._add(frame, depsgraph)
+            self._add(frame, depsgraph, self._many)
             return
         try:
             for time in sorted(times):
                 _set_time(engine, frame + position * self._shutter + time)
-                self._add(frame + time, depsgraph)
+                self._add(frame + time, depsgraph, True)
         finally:
             _set_time(engine, frame)
         if scene.render.motion_blur_shutter > 1:
             self._complain("render", "the shutter is open for one frame at most; more is left out")
 
     def job(self, frames: str | int) -> Exported:
-        """All that was exported, as a job of these frames."""
+        """All that was exported, as a job of these frames. ValueError where no job says what moves."""
         job, complaints = self._jobs[0], []
         if len(self._jobs) > 1:
+            self._tell_of_copies(moving_copies.spread(self._jobs, self._names))
             job, complaints = joined_frames.join(self._times, self._jobs)
         job.frames = hyades.Frames(range=frames, fps=job.frames.fps, shutter=self._shutter)
         for complaint in complaints:
             self._complain(complaint.where, complaint.what)
         return Exported(job, list(self._complaints), self._names)
 
-    def _add(self, time: float, depsgraph: Any) -> None:
+    def _tell_of_copies(self, too_many: list[str]) -> None:
+        for what in too_many:
+            if self._many:
+                raise ValueError(f"{what}: more than one job can say: render its frames one by one")
+            self._complain("motion blur", f"{what}: too many; they stand still")
+
+    def _add(self, time: float, depsgraph: Any, moves: bool) -> None:
         if time in self._times:
             return  # the end of one frame is the beginning of the next
-        exported = export_job(depsgraph, settings=depsgraph.scene.hyades)
+        exported = export_job(depsgraph, settings=depsgraph.scene.hyades, moves=moves)
         if self._jobs:
             joined_frames.share(self._jobs[-1], exported.job)
         self._times.append(time)

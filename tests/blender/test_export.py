@@ -9,7 +9,7 @@ import bpy
 import hyades
 from addon import AddOnTest
 
-from hyades_render import animation, panels
+from hyades_render import animation, moving_copies, panels
 from hyades_render.export import objects
 
 
@@ -101,6 +101,35 @@ class Copies(ExportTest):
         for mode, kind in (("STRAIGHT", hyades.textures.Texture), ("NONE", float)):
             texture.image.alpha_mode = mode
             self.assertIsInstance(self.export()[0].objects["Cube"].material.opacity, kind)
+
+
+class Moving(ExportTest):
+    """Several frames as one job."""
+
+    def film(self, last: int = 3) -> tuple[hyades.Job, str]:
+        exported = animation.job_of(self.scene, frames=range(1, last + 1), name="film")
+        return exported.job, "\n".join(map(str, exported.complaints))
+
+    def test_copies_that_move_have_keys(self) -> None:
+        thing = bpy.data.objects.new("Thing", bpy.data.objects["Cube"].data)
+        self.collection(thing, copies=4)
+        for name, there in (("Copy 1", (True, True)), ("Copy 2", (False, True))):
+            copy = bpy.data.objects[name]
+            for frame, shown in zip((1, 3), there):
+                copy.location.z, copy.hide_render = frame, not shown
+                copy.keyframe_insert("location", frame=frame)
+                copy.keyframe_insert("hide_render", frame=frame)
+        job, said = self.film()
+        self.assertEqual(said, "")
+        self.assertEqual(sorted(job.objects["Thing"].places.matrices[:, 0, 3]), [0, 6])
+        moved = {name: body for name, body in job.objects.items() if name.startswith("Thing copy")}
+        self.assertEqual(len(moved), 2)
+        first, late = moved.values()
+        move = first.transform[-1].translate.keys
+        self.assertEqual([round(move[frame][1], 3) for frame in (1, 2, 3)], [1, 2, 3])
+        self.assertEqual(late.transform[0].scale.keys, {1: 1e-6, 2: 1e-6, 3: 1.0})
+        with mock.patch.object(moving_copies, "_MOST", 1), self.assertRaisesRegex(ValueError, "'Thing', of which 2 copies"):
+            self.film()
 
 
 class NotThere(ExportTest):

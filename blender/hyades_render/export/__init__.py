@@ -29,13 +29,14 @@ class Exported:
     names: Names = field(default_factory=Names)
 
 
-def export_job(depsgraph: Any, *, settings: Any = None) -> Exported:
+def export_job(depsgraph: Any, *, settings: Any = None, moves: bool = False) -> Exported:
     """The scene of `depsgraph` at its current frame.
 
     settings: the add-on's properties (samples, noise, max_depth, ...); None: their defaults. The depsgraph's
     mode (render or viewport) decides what is there. The job's axes: y is up, see axes.py.
+    moves: it is one of several moments, which are to be joined: what may change is said in one way at all of them.
     """
-    context = Context(depsgraph, settings)
+    context = Context(depsgraph, settings, moves)
     add_film(context)
     add_camera(context)
     add_objects(context)

@@ -35,7 +35,9 @@ class Names:
 class Context:
     """One export of one depsgraph."""
 
-    def __init__(self, depsgraph: Any, settings: Any) -> None:
+    def __init__(self, depsgraph: Any, settings: Any, moves: bool = False) -> None:
+        """`moves`: the job is one of several moments, which are to be joined."""
+        self.moves = moves
         self.depsgraph = depsgraph
         self.scene = depsgraph.scene_eval
         self.override = depsgraph.view_layer_eval.material_override  # what all things are made of; None: of their own

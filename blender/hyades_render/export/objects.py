@@ -54,6 +54,8 @@ class _Copies(NamedTuple):
     is_seen: bool
     matrices: list[tuple[float, ...]]
     """Three rows each."""
+    ids: list[Any]
+    """Where what is exported moves: what tells copies apart at other moments, too."""
     others: list[tuple[tuple[float, ...], list[Piece]]]
     """Copies that look different: where they are, and what they are made of."""
 
@@ -77,6 +79,8 @@ def add_objects(context: Context) -> None:
             if known is not None and not (known.looks_differ and _add_another(context, known, instance, object)):
                 first, second, third, _ = instance.matrix_world
                 known.matrices.append(first[:] + second[:] + third[:])
+                if context.moves:
+                    known.ids.append(_id(instance))
             if known is not None:
                 continue
         _tell_of_particles(context, object)
@@ -92,7 +96,7 @@ def _add(context: Context, copies: dict[Any, _Copies], instance: Any, object: An
     if kind in _WITH_SURFACE and instance.is_instance:
         pieces = pieces_of(context, object, matrix)
         rows = tuple(axes.array(matrix)[:3].reshape(-1))
-        found = _Copies(object.name, pieces, is_seen(context, object) and not is_indirect, [rows], [])
+        found = _Copies(object.name, pieces, is_seen(context, object) and not is_indirect, [rows], [_id(instance)] if context.moves else [], [])
         copies[_kind(object, is_indirect)] = found
     elif kind in _WITH_SURFACE:
         seen = is_seen(context, object) and not is_indirect
@@ -131,6 +135,11 @@ def _kind(object: Any, is_indirect: bool) -> tuple[int, int, bool]:
     """What is the same for all copies of one thing. The object of an instance is one for this step alone, whose address the
     next one may have, too; the object that it stands for stays."""
     return object.original.as_pointer(), object.data.as_pointer(), is_indirect
+
+
+def _id(instance: Any) -> tuple[int, ...]:
+    """A copy's, which it has at all moments."""
+    return (instance.parent.original.as_pointer(), *instance.persistent_id)
 
 
 @contextmanager
@@ -195,40 +204,43 @@ def _add_piece(context: Context, name: str, piece: Piece, transform: Any, is_see
     context.add_object(name, body)
 
 
-def _placed(rows: list[tuple[float, ...]]) -> numpy.ndarray:
-    """Matrices (n, 4, 4) into the job's world."""
+def _placed(rows: list[tuple[float, ...]]) -> tuple[numpy.ndarray, numpy.ndarray]:
+    """Matrices (n, 4, 4) into the job's world, and which rows those are."""
     matrices = numpy.zeros((len(rows), 4, 4))
     matrices[:, :3] = numpy.array(rows).reshape(-1, 3, 4)
     matrices[:, 3, 3] = 1
     placed = axes.TO_JOB @ matrices
     # What has no volume is not seen, and the job refuses it.
-    return placed[numpy.abs(numpy.linalg.det(placed[:, :3, :3])) > 1e-18]
+    there = numpy.flatnonzero(numpy.abs(numpy.linalg.det(placed[:, :3, :3])) > 1e-18)
+    return placed[there], there
 
 
 def _place(context: Context, copies: _Copies) -> None:
-    """Copies as a group that is placed by a file; one by one where they are few, shine, or look different."""
-    placed = _placed(copies.matrices)
+    """Copies as a group that is placed by a file; one by one where they are few, shine, or look different. Where they may
+    move, a few are a group, too: there may be more at other moments."""
+    placed, there = _placed(copies.matrices)
     shines = any(not values.is_constant(piece.made.emission, 0) for piece in copies.pieces)
-    if len(placed) < 2 or shines:
+    if shines or (len(placed) < 2 and (copies.looks_differ or not context.moves)):
         for matrix in placed:
             for piece in copies.pieces:
                 _add_piece(context, copies.name, piece, axes.steps(matrix), copies.is_seen)
-    elif copies.pieces:
-        _place_group(context, copies, placed)
+    elif copies.pieces and len(placed):
+        ids = [copies.ids[at] for at in there] if context.moves else None
+        _place_group(context, copies, MatrixPlaces(placed, ids))
     for rows, pieces in copies.others:
-        for matrix in _placed([rows]):
+        for matrix in _placed([rows])[0]:
             for piece in pieces:
                 _add_piece(context, copies.name, piece, axes.steps(matrix), copies.is_seen)
 
 
-def _place_group(context: Context, copies: _Copies, placed: numpy.ndarray) -> None:
+def _place_group(context: Context, copies: _Copies, places: MatrixPlaces) -> None:
     """Copies as a group, and a file of places."""
     bodies: dict[str, objects.Object] = {}
     for piece in copies.pieces:
         bodies[free_name(copies.name, bodies)] = piece.object()
     group = objects.Group(objects=bodies)
     context.job.groups[free_name(copies.name, context.job.groups)] = group
-    instance = objects.Instance(instance=group, places=MatrixPlaces(placed))
+    instance = objects.Instance(instance=group, places=places)
     if not copies.is_seen:
         instance.visible_to_camera = False
     context.add_object(copies.name, instance)

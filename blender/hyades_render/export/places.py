@@ -2,16 +2,20 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, Optional
 
 import numpy
 
 
 class MatrixPlaces:
-    """matrices (n, 4, 4), whose last row is 0, 0, 0, 1."""
+    """matrices (n, 4, 4), whose last row is 0, 0, 0, 1.
 
-    def __init__(self, matrices: Any) -> None:
+    ids: what tells each copy from others at other moments, too; None: nobody asks.
+    """
+
+    def __init__(self, matrices: Any, ids: Optional[list[Any]] = None) -> None:
         self.matrices = numpy.asarray(matrices)
+        self.ids = ids
 
     def encode(self) -> tuple[bytes, str]:
         """The bytes of a binary PLY file."""
