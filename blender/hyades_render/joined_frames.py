@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from copy import copy
 from typing import Any
 
 import hyades
@@ -70,6 +71,8 @@ class _Join:
             return self.described(values, where) if isinstance(first, Described) else first
         if key.takes == "list of steps":
             return self._steps(values, where)
+        if key.name == "emit":
+            values = _shining(values)
         values = [default if value is None else value for value in values]
         first = values[0]
         if isinstance(first, Described) and all(type(value) is type(first) for value in values):
@@ -160,6 +163,19 @@ def _nearest(things: list[Any], at: int) -> Any:
     """What is there at this moment, else at the nearest one."""
     near = sorted(range(len(things)), key=lambda other: abs(other - at))
     return next(things[other] for other in near if things[other] is not None)
+
+
+def _shining(values: list[Any]) -> list[Any]:
+    """What things shine at each moment: where they do not, as at the nearest one at which they do, but dark."""
+    filled = []
+    for at, value in enumerate(values):
+        if value is None:
+            value = copy(_nearest(values, at))
+            for name in ("radiance", "power"):
+                if value.__dict__.get(name) is not None:
+                    setattr(value, name, 0.0)
+        filled.append(value)
+    return filled
 
 
 def _onwards(start: MeshData, end: MeshData, span: float) -> MeshData:

@@ -131,6 +131,31 @@ class Moving(ExportTest):
         with mock.patch.object(moving_copies, "_MOST", 1), self.assertRaisesRegex(ValueError, "'Thing', of which 2 copies"):
             self.film()
 
+    def test_values_that_begin_at_nothing_have_keys(self) -> None:
+        cube = bpy.data.objects["Cube"]
+        shining = self.material("Shining", "ShaderNodeEmission")[0]
+        strength = shining.node_tree.nodes["Emission"].inputs["Strength"]
+        mixed, second = self.material("Mixed")
+        tree = mixed.node_tree
+        mix, first = tree.nodes.new("ShaderNodeMixShader"), tree.nodes.new("ShaderNodeBsdfTransparent")
+        for output, target in ((first, mix.inputs[1]), (second, mix.inputs[2]), (mix, tree.nodes["Material Output"].inputs[0])):
+            tree.links.new(output.outputs[0], target)
+        other = bpy.data.objects.new("Other", cube.data.copy())
+        self.scene.collection.objects.link(other)
+        cube.data.materials[0], other.data.materials[0] = shining, mixed
+        for socket in (strength, mix.inputs["Fac"]):
+            for frame, value in ((1, 0.0), (3, 1.0)):
+                socket.default_value = value
+                socket.keyframe_insert("default_value", frame=frame)
+        job, said = self.film()
+        self.assertEqual(said, "")
+        self.assertEqual(job.objects["Cube"].emit.radiance.keys, {1: 0.0, 2: 1.0, 3: 1.0})
+        half = job.objects["Cube"].emit.color.keys[2][0]
+        self.assertTrue(0 < half < job.objects["Cube"].emit.color.keys[3][0])
+        opacity = job.objects["Other"].material.opacity.keys
+        self.assertEqual((opacity[1], round(opacity[2], 3), opacity[3]), (0, 0.5, 1))
+        self.assertEqual(job.objects["Other"].material.color, [0.5, 0.5, 0.5])
+
 
 class NotThere(ExportTest):
     """What jobs do not have is told by name."""

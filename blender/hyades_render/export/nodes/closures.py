@@ -73,20 +73,30 @@ def mix_shader(translator: Translator, output: Output) -> Closure:
     by_angle = mixed_by_angle(translator, end, first, second)
     if by_angle is not None:
         return by_angle
-    return blend(first, second, held(translator.number(end, 0.5)))
+    whole = translator.context.moves and _may_change(output)
+    return blend(first, second, held(translator.number(end, 0.5)), whole)
 
 
-def blend(first: Closure, second: Closure, amount: Value) -> Closure:
-    """first where amount is 0, second where it is 1."""
-    if values.is_constant(amount, 0):
+def _may_change(output: Output) -> bool:
+    """Whether the tree of a node, or one around it, is animated or driven."""
+    trees = (output.node.id_data, *(group.id_data for group in output.groups))
+    return any(tree.animation_data is not None for tree in trees)
+
+
+def blend(first: Closure, second: Closure, amount: Value, whole: bool = False) -> Closure:
+    """first where amount is 0, second where it is 1. `whole`: at other moments it is something between, so that both
+    have to be there now."""
+    if not whole and values.is_constant(amount, 0):
         return first
-    if values.is_constant(amount, 1):
+    if not whole and values.is_constant(amount, 1):
         return second
     result = Closure()
     result.emission = values.total(
         values.product(first.emission, values.rest(amount)), values.product(second.emission, amount)
     )
-    result.opacity = values.mixed(first.opacity, second.opacity, amount)
+    if whole:
+        result.emission = values.mixed(first.emission, second.emission, amount, whole)
+    result.opacity = values.mixed(first.opacity, second.opacity, amount, whole)
     result.medium = first.medium or second.medium
     if values.is_constant(first.opacity, 0):
         result.material, result.mixed_opacity = second.material, False

@@ -84,8 +84,10 @@ def rest(a: Value) -> Value:
     return (1 - a[0], 1 - a[1], 1 - a[2])
 
 
-def mixed(a: Value, b: Value, amount: Value) -> Value:
-    """a where amount is 0, b where it is 1."""
+def mixed(a: Value, b: Value, amount: Value, whole: bool = False) -> Value:
+    """a where amount is 0, b where it is 1. `whole`: as a mixture of both, though the amount is 0 or 1."""
+    if whole and (is_texture(a) or is_texture(b)):
+        return textures.Mix(a=_plain(a), b=_plain(b), amount=held(number(amount)))
     if is_constant(amount, 0) or a is b:
         return a
     if is_constant(amount, 1):
