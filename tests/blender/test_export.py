@@ -102,6 +102,23 @@ class Copies(ExportTest):
             texture.image.alpha_mode = mode
             self.assertIsInstance(self.export()[0].objects["Cube"].material.opacity, kind)
 
+    def test_angles_count_as_on_average(self) -> None:
+        made, shader = self.material("Pearl")
+        tree = made.node_tree
+        mix = tree.nodes.new("ShaderNodeMixRGB")
+        mix.inputs["Color1"].default_value, mix.inputs["Color2"].default_value = (0, 0, 0, 1), (1, 1, 1, 1)
+        tree.links.new(mix.outputs[0], shader.inputs[0])
+        bpy.data.objects["Cube"].data.materials[0] = made
+        for kind, socket, expected in (
+            ("ShaderNodeFresnel", "Fac", 0.0796),
+            ("ShaderNodeLayerWeight", "Fresnel", 0.1534),
+            ("ShaderNodeLayerWeight", "Facing", 1 / 3),
+        ):
+            tree.links.new(tree.nodes.new(kind).outputs[socket], mix.inputs["Fac"])
+            job, said = self.export()
+            self.assertAlmostEqual(job.objects["Cube"].material.color[0], expected, places=3)
+            self.assertIn("what depends on the angle of view is taken as it is on average", said)
+
 
 class Moving(ExportTest):
     """Several frames as one job."""

@@ -7,6 +7,7 @@ from typing import Optional
 from hyades import materials
 
 from . import graph, values
+from .evaluate.angles import mean_reflection
 from .graph import Input, Output
 from .translator import Translator
 
@@ -55,10 +56,4 @@ def _coat(translator: Translator, found: Output, ior: float, first, second):
         coat = materials.Coat(base=first.material, ior=ior, roughness=roughness)
         return Closure(coat, first.emission, 1.0, first.medium)
     translator.complain(found.node, "what depends on the angle of view is taken as it is on average")
-    return blend(first, second, _mean_reflection(ior))
-
-
-def _mean_reflection(ior: float) -> float:
-    """Share of diffuse light that a surface reflects, by the rational fit of d'Eon and Irving (2011) for ior > 1."""
-    r = ((ior - 1) / (ior + 1)) ** 2
-    return r + (1 - r) / 21  # Schlick's curve, weighted by the cosine
+    return blend(first, second, float(mean_reflection(ior)))

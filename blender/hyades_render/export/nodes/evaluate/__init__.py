@@ -9,7 +9,7 @@ from typing import Any, Optional
 
 from ..graph import Input, Output
 from ..translator import Inexpressible
-from . import attributes, colors, coordinates, images, maths, noise, patterns, vectors, voronoi  # noqa: F401  (they register)
+from . import angles, attributes, colors, coordinates, images, maths, noise, patterns, vectors, voronoi  # noqa: F401  (they register)
 from .evaluator import Evaluator, Varies
 from .points import NOWHERE, Points
 
