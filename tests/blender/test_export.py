@@ -273,6 +273,13 @@ class NotThere(ExportTest):
         lens.type = "ORTHO"
         self.assertEqual(self.export()[1], "")
 
+    def test_a_broken_mesh_is_told_and_left_out(self) -> None:
+        bpy.ops.mesh.primitive_plane_add()
+        bpy.data.objects["Plane"].data.vertices[0].co.x = float("nan")
+        job, said = self.export()
+        self.assertEqual(said, "object 'Plane': its mesh is left out: positions have numbers that are not finite")
+        self.assertEqual([name for name in job.objects if name != "Light"], ["Cube"])
+
     def test_hair_is_told(self) -> None:
         cube = bpy.data.objects["Cube"]
         cube.modifiers.new("Fur", "PARTICLE_SYSTEM")

@@ -170,7 +170,11 @@ def pieces_of(context: Context, object: Any, matrix: Any) -> list[Piece]:
         slots = surface.slots
         kinds = numpy.unique(slots)
         parts = [PartOfSurface(surface, slots == slot if len(kinds) > 1 else slice(None)) for slot in kinds]
-        found = [_piece(context, one, _material_in(context, object, int(slot))) for one, slot in zip(parts, kinds)]
+        try:
+            found = [_piece(context, one, _material_in(context, object, int(slot))) for one, slot in zip(parts, kinds)]
+        except ValueError as error:  # of a mesh that the job refuses: it has numbers that are none, say
+            context.complain(f"object '{object.name}'", f"its mesh is left out: {error}")
+            return []
     if is_mesh and not any(one.is_of_object for one in parts):
         context.pieces[key] = found  # objects without modifiers of their own share their mesh
     return found
