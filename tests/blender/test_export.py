@@ -280,6 +280,11 @@ class NotThere(ExportTest):
         self.assertEqual(said, "object 'Plane': its mesh is left out: positions have numbers that are not finite")
         self.assertEqual([name for name in job.objects if name != "Light"], ["Cube"])
 
+    def test_a_camera_that_is_none_is_refused(self) -> None:
+        self.scene.camera = bpy.data.objects["Light"]
+        with self.assertRaisesRegex(ValueError, "camera 'Light' is of type light, expected a camera"):
+            self.export()
+
     def test_hair_is_told(self) -> None:
         cube = bpy.data.objects["Cube"]
         cube.modifiers.new("Fur", "PARTICLE_SYSTEM")

@@ -14,10 +14,17 @@ from .film import picture_size
 
 
 def add_camera(context: Context) -> None:
-    """Says the camera of the job. Without one in the scene the job keeps its default, with a complaint."""
+    """Says the camera of the job. Without one in the scene the job keeps its default, with a complaint. ValueError: a
+    final render by what is no camera."""
     camera = context.scene.camera
     if camera is None:
         context.complain("scene", "there is no camera")
+        return
+    if camera.type != "CAMERA":
+        words = f"the scene's camera '{camera.name}' is of type {camera.type.lower()}, expected a camera"
+        if context.depsgraph.mode == "RENDER":
+            raise ValueError(words)
+        context.complain("scene", words)  # viewports have one of their own
         return
     if context.scene.render.use_multiview:
         context.complain("scene", "stereo and multiple views are not supported: the camera's own view is rendered")
