@@ -129,7 +129,7 @@ def _outputs(scene: Any, job: hyades.Job, numbered: bool) -> tuple[list[outputs.
         if not scene.render.film_transparent:
             layers.remove("alpha")
         made: outputs.Output = outputs.Exr(file=stem + ".exr", layers=layers, half=image.color_depth == "16")
-        found += _of_axes(layers)
+        found += _of_axes(layers) + (passes.not_there(layer) if kind == "OPEN_EXR_MULTILAYER" else [])
     elif kind == "JPEG":
         made = outputs.Jpg(file=stem + ".jpg", quality=max(image.quality, 1), **shown)
     elif kind == "TIFF":

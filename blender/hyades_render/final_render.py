@@ -73,8 +73,9 @@ class FinalRender:
             exported.job.sampling = hyades.Sampling(samples=_PREVIEW_SAMPLES)
             exported.job.integrator = None
         else:
-            complaints.keep(self._scene, exported.complaints)
-            complaints.tell(self._engine, exported.complaints)
+            found = [*exported.complaints, *passes.not_there(self._layer)]
+            complaints.keep(self._scene, found)
+            complaints.tell(self._engine, found)
         return exported
 
     def _options(self) -> list[str]:

@@ -8,6 +8,8 @@ from typing import Any
 import numpy
 from hyades import Layers
 
+from .export import Complaint
+
 _CALLED = {"motion": "forward"}  # layers by what their channels are called in files
 _NO_LIGHT = ("Albedo", "Variance")  # colours that no exposure makes brighter
 _FAR = 1e10  # what Blender holds for the depth of the background
@@ -63,6 +65,22 @@ PASSES = (
     *_cryptomatte("Object"),
     *_cryptomatte("Material"),
 )
+_NOT_THERE = {
+    "Mist": "use_pass_mist",
+    "UV": "use_pass_uv",
+    "Object Index": "use_pass_object_index",
+    "Material Index": "use_pass_material_index",
+    "DiffCol": "use_pass_diffuse_color",
+    "GlossCol": "use_pass_glossy_color",
+    "TransCol": "use_pass_transmission_color",
+    "Shadow": "use_pass_shadow",
+    "Ambient Occlusion": "use_pass_ambient_occlusion",
+    "CryptoAsset": "use_pass_cryptomatte_asset",
+    "Shadow Catcher": "cycles.use_pass_shadow_catcher",
+    "Debug Sample Count": "cycles.pass_debug_sample_count",
+    "Denoising Data": "cycles.denoising_store_passes",
+}
+"""Switches of a view layer for what jobs have not, by what Blender calls that."""
 _COMBINED = Pass("Combined", "RGBA", "COLOR", "beauty", "use_pass_combined")
 _NOISY = _light("Noisy Image", "beauty", "")
 
@@ -71,6 +89,15 @@ def asked_for(scene: Any, view_layer: Any) -> list[Pass]:
     """The passes of a view layer, Combined first."""
     noisy = [_NOISY] if scene.hyades.denoise != "none" else []
     return [_COMBINED, *noisy, *(one for one in PASSES if one.wanted(view_layer))]
+
+
+def not_there(view_layer: Any) -> list[Complaint]:
+    """What a view layer asks for that no job has."""
+    names = [name for name, switch in _NOT_THERE.items() if Pass(name, "", "", "", switch).wanted(view_layer)]
+    names += [f"AOV {one.name}" for one in getattr(view_layer, "aovs", ())]
+    names += [f"light group {one.name}" for one in getattr(view_layer, "lightgroups", ())]
+    where = f"view layer '{view_layer.name}'"
+    return [Complaint(where, f"there are no passes {', '.join(names)}")] if names else []
 
 
 def layers_for(passes: list[Pass]) -> list[str]:

@@ -9,7 +9,7 @@ import bpy
 import hyades
 from addon import AddOnTest
 
-from hyades_render import animation, moving_copies, panels
+from hyades_render import animation, complaints, moving_copies, panels
 from hyades_render.export import objects
 
 
@@ -284,6 +284,18 @@ class NotThere(ExportTest):
         self.scene.camera = bpy.data.objects["Light"]
         with self.assertRaisesRegex(ValueError, "camera 'Light' is of type light, expected a camera"):
             self.export()
+
+    def test_passes_that_are_not_there_are_told(self) -> None:
+        layer = bpy.context.view_layer
+        layer.use_pass_mist = layer.use_pass_uv = True
+        layer.aovs.add().name = "Heat"
+        layer.lightgroups.add().name = "Key"
+        words = "view layer 'ViewLayer': there are no passes Mist, UV, AOV Heat, light group Key"
+        self.scene.render.image_settings.file_format = "OPEN_EXR_MULTILAYER"
+        self.assertEqual(self.export()[1], words)
+        self.scene.hyades.samples = 1
+        bpy.ops.render.render()
+        self.assertEqual([str(one) for one in complaints.of(self.scene)], [words])
 
     def test_hair_is_told(self) -> None:
         cube = bpy.data.objects["Cube"]
