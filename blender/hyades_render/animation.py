@@ -67,7 +67,8 @@ def still_note(scene: Any) -> str:
     frames = all_frames(scene)
     if len(frames) < 2:
         return ""
-    return f"scene '{scene.name}': nothing moves in frames {text_of(frames)}: one picture of frame {scene.frame_current} is made"
+    still = f"nothing moves in frames {text_of(frames)}"
+    return f"scene '{scene.name}': {still}: one picture of frame {scene.frame_current} is made"
 
 
 def text_of(frames: range) -> str:

@@ -22,8 +22,11 @@ class HyadesRenderEngine(bpy.types.RenderEngine):
     _viewport: viewport.Viewport | None = None
 
     def __del__(self) -> None:
-        # Blender 4 frees the engine before this is called.
-        shown = self.__dict__.pop("_viewport", None) if hasattr(self, "__dict__") else None
+        # Blender may have freed the engine before this is called.
+        try:
+            shown = self.__dict__.pop("_viewport", None) if hasattr(self, "__dict__") else None
+        except ReferenceError:
+            return
         if shown is not None:
             shown.close()
 

@@ -119,6 +119,20 @@ class Copies(ExportTest):
             self.assertAlmostEqual(job.objects["Cube"].material.color[0], expected, places=3)
             self.assertIn("what depends on the angle of view is taken as it is on average", said)
 
+    def test_mixtures_beyond_both_are_computed(self) -> None:
+        made, shader = self.material("Beyond")
+        tree = made.node_tree
+        mix, checker = tree.nodes.new("ShaderNodeMix"), tree.nodes.new("ShaderNodeTexChecker")
+        mix.data_type, mix.clamp_factor, mix.inputs[0].default_value = "RGBA", False, 1.8
+        mix.inputs[6].default_value = (0.1, 0.1, 0.1, 1)
+        checker.inputs[1].default_value = checker.inputs[2].default_value = (0.4, 0.4, 0.4, 1)
+        tree.links.new(checker.outputs[0], mix.inputs[7])
+        tree.links.new(mix.outputs[2], shader.inputs[0])
+        bpy.data.objects["Cube"].data.materials[0] = made
+        self.scene.hyades.bake_size = 64
+        picture = self.export()[0].objects["Cube"].material.color.file
+        self.assertAlmostEqual(float(picture.max()), 0.1 + 1.8 * 0.3, places=4)
+
 
 class Moving(ExportTest):
     """Several frames as one job."""
@@ -155,8 +169,9 @@ class Moving(ExportTest):
         mixed, second = self.material("Mixed")
         tree = mixed.node_tree
         mix, first = tree.nodes.new("ShaderNodeMixShader"), tree.nodes.new("ShaderNodeBsdfTransparent")
-        for output, target in ((first, mix.inputs[1]), (second, mix.inputs[2]), (mix, tree.nodes["Material Output"].inputs[0])):
-            tree.links.new(output.outputs[0], target)
+        ends = (mix.inputs[1], mix.inputs[2], tree.nodes["Material Output"].inputs["Surface"])
+        for output, end in zip((first, second, mix), ends):
+            tree.links.new(output.outputs[0], end)
         other = bpy.data.objects.new("Other", cube.data.copy())
         self.scene.collection.objects.link(other)
         cube.data.materials[0], other.data.materials[0] = shining, mixed
@@ -296,6 +311,29 @@ class NotThere(ExportTest):
         self.scene.hyades.samples = 1
         bpy.ops.render.render()
         self.assertEqual([str(one) for one in complaints.of(self.scene)], [words])
+
+    def test_what_stays_sharp_is_told(self) -> None:
+        bpy.data.objects["Cube"].cycles.use_motion_blur = False
+        self.assertEqual(self.export()[1], "")
+        self.scene.render.use_motion_blur = True
+        self.assertEqual(self.export()[1], "object 'Cube': motion blur is for all: it is blurred where it moves")
+
+    def test_limits_of_panoramas_are_told(self) -> None:
+        lens = self.scene.camera.data
+        lens.type = "PANO"
+        owner = lens if hasattr(lens, "panorama_type") else lens.cycles
+        owner.panorama_type = "EQUIRECTANGULAR"
+        self.assertEqual(self.export()[1], "")
+        owner.latitude_min = 0
+        self.assertEqual(self.export()[1], "camera 'Camera': a panorama shows all around: its limits are left out")
+
+    def test_light_below_nothing_is_told(self) -> None:
+        made, shader = self.material("Dark", "ShaderNodeEmission")
+        shader.inputs["Strength"].default_value = -1
+        bpy.data.objects["Cube"].data.materials[0] = made
+        job, said = self.export()
+        self.assertEqual(said, "material 'Dark' > node 'Emission': light below 0 is left out")
+        self.assertIsNone(job.objects["Cube"].emit)
 
     def test_hair_is_told(self) -> None:
         cube = bpy.data.objects["Cube"]

@@ -40,6 +40,8 @@ def translated(context: Context, camera: Any) -> cameras.Camera:
         kind = panorama_type(context, data)
         if kind != "EQUIRECTANGULAR":
             context.complain(where, f"panoramas of type {kind.lower()} are not supported; equirectangular is used")
+        elif _is_part(data):
+            context.complain(where, "a panorama shows all around: its limits are left out")
         return cameras.Equirectangular(**placed)
     frame = Frame(context.scene.render, data)
     lens = _lens(context, camera, pose)
@@ -89,6 +91,13 @@ def panorama_type(context: Context, data: Any) -> str:
     if hasattr(data, "panorama_type"):
         return data.panorama_type
     return getattr(getattr(data, "cycles", None), "panorama_type", "EQUIRECTANGULAR")
+
+
+def _is_part(data: Any) -> bool:
+    """Whether a panorama is kept within some latitudes and longitudes."""
+    owner = data if hasattr(data, "latitude_min") else data.cycles
+    whole = {"latitude_min": -math.pi / 2, "latitude_max": math.pi / 2, "longitude_min": -math.pi, "longitude_max": math.pi}
+    return any(abs(getattr(owner, name) - angle) > 1e-5 for name, angle in whole.items())
 
 
 def _lens(context: Context, camera: Any, pose: Pose) -> dict[str, Any]:

@@ -93,11 +93,13 @@ def add_objects(context: Context) -> None:
 def _add(context: Context, copies: dict[Any, _Copies], instance: Any, object: Any, is_indirect: bool) -> None:
     """One object, or the first of many copies."""
     kind, matrix = object.type, instance.matrix_world
+    _tell_of_blur(context, object)
     if kind in _WITH_SURFACE and instance.is_instance:
         pieces = pieces_of(context, object, matrix)
         rows = tuple(axes.array(matrix)[:3].reshape(-1))
-        found = _Copies(object.name, pieces, is_seen(context, object) and not is_indirect, [rows], [_id(instance)] if context.moves else [], [])
-        copies[_kind(object, is_indirect)] = found
+        seen = is_seen(context, object) and not is_indirect
+        ids = [_id(instance)] if context.moves else []
+        copies[_kind(object, is_indirect)] = _Copies(object.name, pieces, seen, [rows], ids, [])
     elif kind in _WITH_SURFACE:
         seen = is_seen(context, object) and not is_indirect
         for piece in pieces_of(context, object, matrix):
@@ -117,6 +119,13 @@ def _tell_of_particles(context: Context, object: Any) -> None:
         modifier = next((one for one in object.modifiers if getattr(one, "particle_system", None) == system), None)
         if settings.type == "HAIR" and settings.render_type == "PATH" and (modifier is None or modifier.show_render):
             context.complain(f"object '{object.name}'", f"the hair of '{system.name}' is not supported yet; it is left out")
+
+
+def _tell_of_blur(context: Context, object: Any) -> None:
+    """Complains where an object is to stay sharp though it moves."""
+    cycles = getattr(object, "cycles", None)
+    if context.scene.render.use_motion_blur and not getattr(cycles, "use_motion_blur", True):
+        context.complain(f"object '{object.name}'", "motion blur is for all: it is blurred where it moves")
 
 
 def _add_another(context: Context, copies: _Copies, instance: Any, object: Any) -> bool:

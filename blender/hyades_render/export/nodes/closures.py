@@ -153,9 +153,16 @@ def _doubled(material: Optional[materials.Material]) -> bool:
     return True
 
 
+def bright(translator: Translator, output: Output, strength: Value) -> Value:
+    """The strength of an emission, not below 0; complains where it is."""
+    if not values.is_texture(strength) and values.number(strength) < 0:
+        translator.complain(output.node, "light below 0 is left out")
+    return held(strength, 0.0, 1e18)
+
+
 @shader("EMISSION")
 def emission(translator: Translator, output: Output) -> Closure:
-    strength = translator.number(output.input("Strength"))
+    strength = bright(translator, output, translator.number(output.input("Strength")))
     return Closure(None, values.product(translator.value(output.input("Color")), strength))
 
 

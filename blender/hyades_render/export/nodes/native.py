@@ -132,7 +132,10 @@ def mix(translator: Translator, output: Output) -> Value:
     a, b = _input(translator, output, f"A_{end}"), _input(translator, output, f"B_{end}")
     blend = "MIX" if node.data_type == "FLOAT" else node.blend_type
     clamp = node.data_type == "RGBA" and node.clamp_result
-    return _mixed(output, blend, a, b, _input(translator, output, "Factor_Float"), clamp)
+    amount = _input(translator, output, "Factor_Float")
+    if not node.clamp_factor and (is_texture(amount) or not 0 <= values.number(amount) <= 1):
+        raise Inexpressible(output, "no texture of the job mixes beyond both")
+    return _mixed(output, blend, a, b, amount, clamp)
 
 
 def _mixed(output: Output, blend: str, a: Value, b: Value, amount: Value, clamp: bool) -> Value:

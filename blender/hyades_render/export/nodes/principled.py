@@ -9,7 +9,7 @@ from hyades import materials
 
 from . import values
 from .bsdfs import subsurface_of
-from .closures import Closure, shader
+from .closures import Closure, bright, shader
 from .graph import Output
 from .normals import normal_keys
 from .translator import Translator
@@ -25,7 +25,7 @@ def principled(translator: Translator, output: Output) -> Closure:
     medium_keys = _subsurface(translator, output, is_new)
     if medium_keys is not None:
         made.subsurface = medium_keys
-    strength = translator.number(output.input("Emission Strength"), 0.0)
+    strength = bright(translator, output, translator.number(output.input("Emission Strength"), 0.0))
     emission = values.product(translator.value(output.input("Emission Color", "Emission")), strength)
     alpha = held(translator.number(output.input("Alpha"), 1.0))
     return Closure(made, values.product(emission, alpha), alpha)
