@@ -19,6 +19,12 @@ from .moving import Moments
 
 _TONE_MAPS = {"Standard": "srgb", "Raw": "linear"}  # views that need no configuration of OpenColorIO
 _LOOKS = 5  # frames that tell whether anything moves, mostly
+_VIDEOS = {
+    "MPEG4": (outputs.Video, ".mp4", "H264"),
+    "QUICKTIME": (outputs.Video, ".mov", "H264"),
+    "WEBM": (outputs.Webm, ".webm", "WEBM"),
+}
+"""By Blender's format: the output of a job, how its file ends, and its codec as Blender calls it (WEBM is VP9)."""
 _PLAIN_COMPOSITE = {"R_LAYERS", "COMPOSITE", "VIEWER", "SPLITVIEWER", "FRAME", "REROUTE"}
 _EXR = ("OPEN_EXR", "OPEN_EXR_MULTILAYER")
 
@@ -136,12 +142,30 @@ def _outputs(scene: Any, job: hyades.Job, numbered: bool) -> tuple[list[outputs.
     elif kind == "TIFF":
         made = outputs.Tiff(file=stem + ".tif", transparent=see_through, bits=_bits(image), **shown)
     elif kind == "FFMPEG" and numbered:
-        made = outputs.Video(file=stem + ".mp4", **shown)
+        video, end, codec = _VIDEOS.get(scene.render.ffmpeg.format, (outputs.Video, ".mp4", "H264"))
+        found += _of_video(scene.render.ffmpeg, codec)
+        made = video(file=stem + end, **shown)
     else:
-        if kind not in ("PNG", "FFMPEG"):
+        if kind == "FFMPEG":
+            found.append(Complaint("output", "one picture is no video: PNG is written"))
+        elif kind != "PNG":
             found.append(Complaint("output", f"files of type {kind} are not written; PNG is"))
         made = outputs.Png(file=stem + ".png", transparent=see_through, bits=_bits(image), **shown)
+    if image.color_mode == "BW":
+        found.append(Complaint("output", "pictures are written in colour, not in black and white"))
     return [made], found + _after_render(scene)
+
+
+def _of_video(video: Any, codec: str) -> list[Complaint]:
+    """What a video has not."""
+    found = []
+    if video.format not in _VIDEOS:
+        found.append(Complaint("output", f"videos of format {video.format} are not written; MPEG4 is"))
+    elif video.codec != codec:
+        found.append(Complaint("output", f"videos of codec {video.codec} are not written; {codec} is"))
+    if video.audio_codec != "NONE":
+        found.append(Complaint("output", "videos have no sound"))
+    return found
 
 
 def _after_render(scene: Any) -> list[Complaint]:
@@ -150,12 +174,14 @@ def _after_render(scene: Any) -> list[Complaint]:
     layers = [layer.name for layer in scene.view_layers if layer.use]
     if len(layers) > 1:
         others = ", ".join(f"'{name}'" for name in layers[1:])
-        found.append(Complaint("output", f"view layer '{layers[0]}' is rendered; {others} left out"))
+        found.append(Complaint("output", f"view layer '{layers[0]}' is rendered, not {others}"))
     nodes = scene.node_tree.nodes if scene.use_nodes and scene.node_tree is not None else ()
     if render.use_compositing and any(node.type not in _PLAIN_COMPOSITE and not node.mute for node in nodes):
         found.append(Complaint("output", "nodes of the compositor are left out"))
     if render.use_sequencer and scene.sequence_editor is not None and len(scene.sequence_editor.sequences):
         found.append(Complaint("output", "strips of the sequencer are left out: the scene is rendered"))
+    if render.use_stamp:
+        found.append(Complaint("output", "nothing is burned into the picture: metadata are left out"))
     if render.use_multiview:
         found.append(Complaint("output", "stereo and multiple views are left out: the camera's own view is rendered"))
     return found
@@ -215,7 +241,7 @@ def _stem(scene: Any, name: str, numbered: bool) -> str:
     """The name of files without its end: that of the output path, else the job's; `####` stands for the frame."""
     path = scene.render.filepath
     base = "" if path.endswith(("/", "\\")) else Path(bpy.path.abspath(path)).name
-    base = re.sub(r"\.(png|jpe?g|tiff?|exr|mp4|mov|mkv|avi)$", "", base, flags=re.IGNORECASE)
+    base = re.sub(r"\.(png|jpe?g|tiff?|exr|mp4|mov|webm|mkv|avi)$", "", base, flags=re.IGNORECASE)
     if not numbered:
         return base.replace("#", "") or name
     if "#" in base:

@@ -247,7 +247,7 @@ class NotThere(ExportTest):
         self.scene.view_layers.new("Back")
         self.scene.render.use_multiview = True
         said = self.export()[1]
-        for what in ("view layer 'ViewLayer' is rendered; 'Back' left out", "nodes of the compositor", "stereo"):
+        for what in ("view layer 'ViewLayer' is rendered, not 'Back'", "nodes of the compositor", "stereo"):
             self.assertIn(f"output: {what}", said)
         self.scene.render.use_compositing = False
         self.assertNotIn("compositor", self.export()[1])
@@ -334,6 +334,24 @@ class NotThere(ExportTest):
         job, said = self.export()
         self.assertEqual(said, "material 'Dark' > node 'Emission': light below 0 is left out")
         self.assertIsNone(job.objects["Cube"].emit)
+
+    def test_videos_are_as_asked_for_or_told(self) -> None:
+        image, video = self.scene.render.image_settings, self.scene.render.ffmpeg
+        image.file_format = "FFMPEG"
+        for kind, codec, end, words in (
+            ("MPEG4", "H264", ".mp4", ""),
+            ("WEBM", "WEBM", ".webm", ""),
+            ("QUICKTIME", "H264", ".mov", ""),
+            ("MKV", "H264", ".mp4", "output: videos of format MKV are not written; MPEG4 is"),
+            ("MPEG4", "MPEG4", ".mp4", "output: videos of codec MPEG4 are not written; H264 is"),
+        ):
+            video.format, video.codec = kind, codec
+            exported = animation.job_of(self.scene, frames=range(1, 3), name="film")
+            self.assertTrue(exported.job.outputs[0].file.endswith(end), kind)
+            self.assertEqual("\n".join(map(str, exported.complaints)), words)
+        self.assertEqual(self.export()[1], "output: one picture is no video: PNG is written")
+        image.file_format, image.color_mode = "PNG", "BW"
+        self.assertEqual(self.export()[1], "output: pictures are written in colour, not in black and white")
 
     def test_hair_is_told(self) -> None:
         cube = bpy.data.objects["Cube"]
