@@ -17,6 +17,7 @@ if TYPE_CHECKING:
 
 _COLOR = re.compile(r"#(?:[0-9a-fA-F]{3}|[0-9a-fA-F]{6})|\d+(\.\d*)?K")
 _FRAMES = re.compile(r"\d+(-\d+(x\d+)?)?")
+_NAME = re.compile(r"[A-Za-z0-9_\u0080-\U0010ffff]([-A-Za-z0-9_. \u0080-\U0010ffff]*[-A-Za-z0-9_.\u0080-\U0010ffff])?")
 _COUNTED = re.compile(r"(\d+) (whole )?numbers")
 
 
@@ -30,6 +31,14 @@ def is_number(value: Any) -> bool:
 
 def is_expression(value: Any) -> bool:
     return isinstance(value, str) and value.startswith("=")
+
+
+def name(value: str) -> str:
+    """`value`, where a job may call something so; KeyRefused: it may not. Names become those of files."""
+    if not _NAME.fullmatch(value) or len(value.encode("utf-8", "surrogatepass")) > 100:
+        letters = "letters, digits, _, -, . and inner spaces, beginning with a letter, digit or _"
+        raise refuse(f"a name of 1 to 100 bytes: {letters}")
+    return value
 
 
 def plain(value: Any) -> Any:

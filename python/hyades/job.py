@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from .checks import are_floats
+from .checks import are_floats, name
 from .described import Described, Key
 from .errors import JobError, KeyRefused
 from .files import JobFiles, write_whole
@@ -33,6 +33,14 @@ class Job(JobKeys):
     gets a name when the job is written.
     """
 
+    def __setattr__(self, key: str, value: Any) -> None:
+        if key == "name" and isinstance(value, str):
+            try:
+                name(value)
+            except KeyRefused as error:
+                raise KeyRefused(f"Job.name is {value!r}, {error}") from None
+        super().__setattr__(key, value)
+
     def document(self, folder: str | os.PathLike[str] = ".") -> Document:
         """The job as it is written into `folder`. KeyRefused: something that must be said is not."""
         return Document(self, Path(folder))
@@ -56,8 +64,8 @@ class Document:
         self._names: dict[int, str] = {}
         self._added: dict[str, dict[str, Any]] = {name: {} for name in ("materials", "media", "groups", "textures")}
         for section in self._added:
-            for name, thing in getattr(job, section).items():
-                self._names[id(thing)] = name
+            for called, thing in getattr(job, section).items():
+                self._names[id(thing)] = called
         root = self._node(job)
         for section, things in self._added.items():
             if things:
@@ -105,7 +113,7 @@ class Document:
         if isinstance(value, (list, tuple)):
             return value if are_floats(value) else [self._value(key, item) for item in value]
         if isinstance(value, Mapping):
-            return Node((name, self._value(key, item)) for name, item in value.items())
+            return Node((_called(key, entry), self._value(key, item)) for entry, item in value.items())
         return value
 
     def _animation(self, value: Keys) -> Node:
@@ -129,11 +137,21 @@ class Document:
         if id(thing) not in self._names:
             taken = {*getattr(self.job, section), *self._added[section]}
             kind = (thing.TYPE or section.rstrip("s")).removeprefix("media") or "medium"
-            name = next(n for i in range(1, 1 << 30) if (n := f"{kind}-{i}") not in taken)
-            self._names[id(thing)] = name
-            self._added[section][name] = Node()  # before it is written: it may name itself
-            self._added[section][name] = self._node(thing)
+            called = next(n for i in range(1, 1 << 30) if (n := f"{kind}-{i}") not in taken)
+            self._names[id(thing)] = called
+            self._added[section][called] = Node()  # before it is written: it may name itself
+            self._added[section][called] = self._node(thing)
         return self._names[id(thing)]
+
+
+def _called(key: Key, entry: Any) -> Any:
+    """What an entry of a map is called. KeyRefused: a thing of the job may not be called so."""
+    if key.takes == "entries":
+        try:
+            name(entry)
+        except KeyRefused as error:
+            raise KeyRefused(f"{key.name} has {entry!r}, {error}") from None
+    return entry
 
 
 def _in_order(root: Node) -> Node:

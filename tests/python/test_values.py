@@ -39,6 +39,21 @@ class Keys(unittest.TestCase):
         outputs.Png(file="a.png", denoise=True, bits=16)
         self.assertEqual(hyades.Job(frames=range(1, 25, 2)).frames, "1-23x2")
 
+    def test_names_are_those_that_jobs_take(self) -> None:
+        for right in ("a", "_1", "shot 1.b-2", "Würfel", "x" * 100):
+            job = hyades.Job(name=right, objects={right: hyades.objects.Sphere()})
+            self.assertIn(f"{right}", job.yaml())
+        for wrong in ("", "../escaped", "bad/name", "-a", ".a", " a", "a ", "a\n", "x" * 101, "ü" * 51):
+            with self.assertRaisesRegex(hyades.KeyRefused, "Job.name is .*expected a name of 1 to 100 bytes"):
+                hyades.Job(name=wrong)
+            job = hyades.Job(objects={wrong: hyades.objects.Sphere()})
+            with self.assertRaisesRegex(hyades.KeyRefused, "objects has .*expected a name"):
+                job.yaml()
+        job = hyades.Job(name="kept")
+        with self.assertRaises(hyades.KeyRefused):
+            job.name = "bad/name"
+        self.assertEqual(job.name, "kept")
+
     def test_an_unknown_key_is_refused_with_a_hint(self) -> None:
         with self.assertRaisesRegex(AttributeError, "did you mean 'roughness'"):
             materials.Lambert().rougness = 1
