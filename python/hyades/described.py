@@ -9,6 +9,7 @@ from typing import Any, ClassVar
 
 from .checks import checked
 from .errors import KeyRefused
+from .words import documented
 
 _UNSET: Any = type("Unset", (), {"__repr__": lambda self: "(not said)"})()
 _COLLECTIONS = {"entries": dict, "list": list}
@@ -60,7 +61,17 @@ def key(takes: str, default: Any = None, **facts: Any) -> Any:
     return Key(takes, default, **facts)
 
 
-class Described:
+class _Documented(type):
+    """The class of classes whose documentation tells of their keys, too."""
+
+    @property
+    def __doc__(cls) -> str:  # type: ignore[override]
+        own = [base for base in cls.__mro__ if isinstance(base, _Documented)]
+        texts = (documented(b.__module__, b.__name__, [n for n, k in vars(b).items() if isinstance(k, Key)]) for b in own[:-1])
+        return "\n\n".join(filter(None, texts)) or str(vars(cls).get("__doc__") or "")
+
+
+class Described(metaclass=_Documented):
     """What a job describes by keys. A key that is None, or was not said, is not written."""
 
     TYPE: ClassVar[str] = ""

@@ -1,5 +1,6 @@
 """What keys take and refuse, and the text that a job becomes."""
 
+import pydoc
 import unittest
 
 import environment  # noqa: F401  (finds the package)
@@ -53,6 +54,12 @@ class Keys(unittest.TestCase):
         with self.assertRaises(hyades.KeyRefused):
             job.name = "bad/name"
         self.assertEqual(job.name, "kept")
+
+    def test_help_shows_what_keys_mean(self) -> None:
+        text = pydoc.render_doc(hyades.Film, renderer=pydoc.plaintext)
+        for words in ("size:", "Size of the full frame.", "crop:", "row 0 is the top"):
+            self.assertIn(words, text)
+        self.assertIn("priority:", pydoc.render_doc(objects.Sphere, renderer=pydoc.plaintext))  # of its base
 
     def test_an_unknown_key_is_refused_with_a_hint(self) -> None:
         with self.assertRaisesRegex(AttributeError, "did you mean 'roughness'"):
