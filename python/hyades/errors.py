@@ -1,4 +1,5 @@
-"""What can go wrong: every exception of this package is a HyadesError."""
+"""What can go wrong with jobs, runs and farms. What is wrong with a call, an array or a file is an exception of Python's:
+TypeError, AttributeError, ValueError, OSError."""
 
 from __future__ import annotations
 
@@ -12,7 +13,7 @@ _COMPLAINT = re.compile(r"^(?P<file>[^\n]+?):(?P<line>\d+):(?:(?P<column>\d+):)?
 
 
 class HyadesError(Exception):
-    """Whatever this package raises on its own."""
+    """Mistakes in jobs, and what programs and farms refuse."""
 
 
 class KeyRefused(HyadesError, ValueError):

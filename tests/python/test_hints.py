@@ -1,5 +1,6 @@
 """mypy accepts the package's hints, and they refuse what jobs would."""
 
+import re
 import shutil
 import subprocess
 import tempfile
@@ -52,6 +53,12 @@ class Hints(unittest.TestCase):
         errors = [line for line in said.splitlines() if " error: " in line]
         for line, expected in zip(errors, WRONG.values(), strict=True):
             self.assertIn(expected, line)
+
+    def test_the_examples_of_the_page(self) -> None:
+        examples = re.findall(r"```python\n(.*?)```", (ROOT / "docs/python.md").read_text(), re.DOTALL)
+        self.assertEqual(len(examples), 4)
+        for example in examples:
+            self.assertIn("Success", self.mypy("-c", example))
 
 
 if __name__ == "__main__":
