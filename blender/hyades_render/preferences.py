@@ -96,13 +96,24 @@ def farm(patience: float = 10.0) -> hyades.Farm:
         return hyades.Farm(patience=patience)
     token_file = preferences.token_file or os.environ.get("HYADES_TOKEN_FILE", "")
     token = Path(bpy.path.abspath(token_file)).read_text("utf-8").strip() if token_file else None
-    return hyades.Farm(
-        preferences.farm_address.strip() or None,
-        token=token,
-        ca=bpy.path.abspath(preferences.ca_file) if preferences.ca_file else None,
-        insecure=preferences.insecure,
-        patience=patience,
-    )
+    try:
+        return hyades.Farm(
+            preferences.farm_address.strip() or None,
+            token=token,
+            ca=bpy.path.abspath(preferences.ca_file) if preferences.ca_file else None,
+            insecure=preferences.insecure,
+            patience=patience,
+        )
+    except ValueError as error:
+        raise ValueError(_as_preferences(str(error))) from None
+
+
+def _as_preferences(message: str) -> str:
+    """What the package says of its arguments, said of the preferences."""
+    names = {"ca=": "its CA Certificate", "insecure=True": "the preference Plain Text Beyond This Machine"}
+    for argument, name in names.items():
+        message = message.replace(argument, name)
+    return message
 
 
 def dashboard(job: int) -> str:

@@ -9,7 +9,7 @@ import bpy
 import hyades
 from addon import AddOnTest
 
-from hyades_render import animation, complaints, moving_copies, panels
+from hyades_render import animation, complaints, moving_copies, panels, preferences
 from hyades_render.export import objects
 
 
@@ -361,6 +361,14 @@ class NotThere(ExportTest):
         self.assertIn("object 'Cube': the hair of 'Fur' is not supported yet", self.export()[1])
         cube.modifiers[0].show_render = False
         self.assertEqual(self.export()[1], "")
+
+
+class Preferences(AddOnTest):
+    def test_a_farm_that_is_refused_is_told_by_the_preferences(self) -> None:
+        there = SimpleNamespace(farm_address="http://farm.example:8080", token_file="", ca_file="", insecure=False)
+        words = "expected https:// and its CA Certificate, or the preference Plain Text Beyond This Machine to send"
+        with mock.patch.object(preferences, "get", lambda: there), self.assertRaisesRegex(ValueError, words):
+            preferences.farm()
 
 
 if __name__ == "__main__":
