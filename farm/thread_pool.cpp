@@ -48,7 +48,7 @@ void ThreadPool::work() {
       wake_.wait(mutex_);
       continue;
     }
-    const std::string owner = *turn;
+    const std::string owner = std::move(*turn);
     turns_.erase(turn);
     const auto his = of_.find(owner);
     std::function<void()> what = std::move(his->second.front());

@@ -73,7 +73,8 @@ class JobRecovery {
                                                    const std::vector<StoredFrame>& frames);
   core::Status repeat_for_videos(const ActiveJob& active, const std::vector<int32_t>& done,
                                  std::set<int32_t>& repeated);
-  void set_films_aside(const ActiveJob& active, RestoredJob& restored);
+  void set_films_aside(const ActiveJob& active,
+                       RestoredJob& restored) HYADES_NO_THREAD_SAFETY_ANALYSIS;
   void restore_films(ActiveJob& active, const LogContents& contents,
                      RestoredJob& restored) HYADES_NO_THREAD_SAFETY_ANALYSIS;
 

@@ -205,7 +205,7 @@ void PicturesApi::begin_some() {
 std::optional<PicturesApi::FrameId> PicturesApi::begin_next() {
   const core::MutexLock lock(mutex_);
   if (in_work_.size() >= kMostFilms) return std::nullopt;
-  const auto has_one = [&](const std::string& owner) {
+  const auto has_one = [&](const std::string& owner) HYADES_REQUIRES(mutex_) {
     return !owner.empty() && std::any_of(in_work_.begin(), in_work_.end(), [&](const auto& one) {
       return one.second.owner == owner;
     });
