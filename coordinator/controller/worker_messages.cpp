@@ -1,6 +1,7 @@
 // What workers say, and what they are told.
 #include <algorithm>
 #include <chrono>
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <optional>
