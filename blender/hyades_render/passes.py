@@ -27,11 +27,14 @@ class Pass:
     layer: str
     """The job's; a Cryptomatte's is what the job calls all its ranks."""
     switch: str
-    """The property of the view layer that asks for it; `hyades.` before those of the add-on."""
+    """Properties of the view layer that ask for it, any of them; `hyades.` and `cycles.` before those of the add-ons."""
 
     def wanted(self, view_layer: Any) -> bool:
-        owner, _, name = self.switch.rpartition(".")
-        return bool(getattr(getattr(view_layer, owner) if owner else view_layer, name, False))
+        for switch in self.switch.split():
+            owner, _, name = switch.rpartition(".")
+            if getattr(getattr(view_layer, owner, None) if owner else view_layer, name, False):
+                return True
+        return False
 
 
 def _light(name: str, layer: str, switch: str) -> Pass:
@@ -55,8 +58,8 @@ PASSES = (
     _light("GlossInd", "glossy_indirect", "use_pass_glossy_indirect"),
     _light("TransDir", "transmission_direct", "use_pass_transmission_direct"),
     _light("TransInd", "transmission_indirect", "use_pass_transmission_indirect"),
-    _light("VolumeDir", "volume_direct", "hyades.use_pass_volume_direct"),
-    _light("VolumeInd", "volume_indirect", "hyades.use_pass_volume_indirect"),
+    _light("VolumeDir", "volume_direct", "hyades.use_pass_volume_direct cycles.use_pass_volume_direct"),
+    _light("VolumeInd", "volume_indirect", "hyades.use_pass_volume_indirect cycles.use_pass_volume_indirect"),
     _light("Emit", "emission", "use_pass_emit"),
     _light("Env", "environment", "use_pass_environment"),
     _light("Albedo", "albedo", "hyades.use_pass_albedo"),

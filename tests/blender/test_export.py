@@ -353,6 +353,11 @@ class NotThere(ExportTest):
         image.file_format, image.color_mode = "PNG", "BW"
         self.assertEqual(self.export()[1], "output: pictures are written in colour, not in black and white")
 
+    def test_passes_that_cycles_was_asked_for_are_there(self) -> None:
+        bpy.context.view_layer.cycles.use_pass_volume_direct = True
+        self.scene.render.image_settings.file_format = "OPEN_EXR_MULTILAYER"
+        self.assertEqual(self.export()[0].outputs[0].layers, ["beauty", "volume_direct"])
+
     def test_hair_is_told(self) -> None:
         cube = bpy.data.objects["Cube"]
         cube.modifiers.new("Fur", "PARTICLE_SYSTEM")
