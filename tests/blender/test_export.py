@@ -133,6 +133,20 @@ class Copies(ExportTest):
         picture = self.export()[0].objects["Cube"].material.color.file
         self.assertAlmostEqual(float(picture.max()), 0.1 + 1.8 * 0.3, places=4)
 
+    def test_colors_of_images_hold_their_alpha_while_nobody_asks_for_it(self) -> None:
+        made, shader = self.material("Leaf")
+        texture = made.node_tree.nodes.new("ShaderNodeTexImage")
+        made.node_tree.links.new(texture.outputs["Color"], shader.inputs[0])
+        image = texture.image = bpy.data.images.new("Leaf", 2, 1, alpha=True)
+        bpy.data.objects["Cube"].data.materials[0] = made
+        for alpha, mode, kind in ((1, "STRAIGHT", "image"), (0.5, "STRAIGHT", "scale"), (0.5, "CHANNEL_PACKED", "image")):
+            image.pixels, image.alpha_mode = [1, 1, 1, 1, 1, 1, 1, alpha], mode
+            self.assertEqual(self.export()[0].objects["Cube"].material.color.TYPE, kind)
+        image.alpha_mode = "STRAIGHT"
+        transparent = made.node_tree.nodes.new("ShaderNodeBsdfTransparent")
+        made.node_tree.links.new(texture.outputs["Alpha"], transparent.inputs[0])
+        self.assertEqual(self.export()[0].objects["Cube"].material.color.TYPE, "image")
+
 
 class Moving(ExportTest):
     """Several frames as one job."""

@@ -11,6 +11,8 @@ from ..translator import Inexpressible
 from .evaluator import Evaluator, computes
 
 Array = Any
+DARKER = 2.2
+"""Light that a share of an sRGB code is, as an exponent of the share."""
 
 
 def pixels_of(output: Output, context: Any) -> Array:
@@ -34,6 +36,25 @@ def pixels_of(output: Output, context: Any) -> Array:
             linear = numpy.where(color <= 0.04045, color / 12.92, ((color + 0.055) / 1.055) ** 2.4)
             found = numpy.concatenate([linear, found[..., 3:4]], axis=2)
         context.materials[key] = found
+    return context.materials[key]
+
+
+def is_darkened(output: Output, context: Any) -> bool:
+    """Whether the colour of a node is one times its alpha: while nobody asks for alpha, Cycles leaves it in there, of
+    files of bytes in their codes. (Files of floats hold such colours themselves.)"""
+    image = output.node.image
+    alpha = next((socket for socket in output.node.outputs if socket.identifier == "Alpha"), None)
+    if alpha is None or alpha.is_linked or output.socket.identifier == "Alpha":
+        return False
+    if image.source not in ("FILE", "GENERATED"):
+        return False
+    if image.alpha_mode not in ("STRAIGHT", "PREMUL") or image.colorspace_settings.is_data or image.channels < 4 or image.is_float:
+        return False
+    key = ("sees through", image.name_full)
+    if key not in context.materials:
+        flat = numpy.empty(image.size[0] * image.size[1] * 4, "float32")
+        image.pixels.foreach_get(flat)
+        context.materials[key] = bool((flat[3::4] < 1).any())
     return context.materials[key]
 
 
@@ -77,7 +98,10 @@ def image_texture(at: Evaluator, output: Output) -> Array:
         raise Inexpressible(output, f"the projection {node.projection.lower()} is not supported here")
     found = looked_up(pixels_of(output, at.translator.context), place[:, 0], place[:, 1], node.extension,
                       node.interpolation)
-    return found[:, 3] if output.socket.identifier == "Alpha" else found[:, :3]
+    if output.socket.identifier == "Alpha":
+        return found[:, 3]
+    darkened = is_darkened(output, at.translator.context)
+    return found[:, :3] * (found[:, 3:4] ** DARKER if darkened else 1)
 
 
 @computes("TEX_ENVIRONMENT")
