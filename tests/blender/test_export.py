@@ -372,6 +372,13 @@ class NotThere(ExportTest):
         self.scene.render.image_settings.file_format = "OPEN_EXR_MULTILAYER"
         self.assertEqual(self.export()[0].outputs[0].layers, ["beauty", "volume_direct"])
 
+    def test_bodies_that_want_longer_paths_are_told(self) -> None:
+        wax = self.material("Wax", "ShaderNodeSubsurfaceScattering")[0]
+        bpy.data.objects["Cube"].data.materials[0] = wax
+        self.assertIn("material 'Wax' > node 'Subsurface Scattering': light scatters often", self.export()[1])
+        self.scene.hyades.max_depth = 256
+        self.assertEqual(self.export()[1], "")
+
     def test_hair_is_told(self) -> None:
         cube = bpy.data.objects["Cube"]
         cube.modifiers.new("Fur", "PARTICLE_SYSTEM")

@@ -13,6 +13,9 @@ from .normals import normal_keys
 from .translator import Translator
 from .values import held
 
+_DEEP = 128
+"""Depth of paths from which on bodies are about as bright as they are."""
+
 
 def _color(translator: Translator, output: Output, name: str = "Color") -> Any:
     return held(translator.value(output.input(name)))
@@ -105,6 +108,10 @@ def subsurface_of(
     translator: Translator, output: Output, color: values.Value, radius: Any, scale: float, anisotropy: Any
 ) -> materials.Subsurface:
     """What light does within a body; radius times scale is how far it goes [m]."""
+    depth = int(translator.context.setting("max_depth", 32))
+    if depth < _DEEP:
+        what = f"light scatters often within a body: a max depth of {depth} darkens it, {2 * _DEEP} does not"
+        translator.complain(output.node, what)
     far = [max(part * scale, 1e-6) for part in values.color(translator.constant(radius, 0.01))]
     made = materials.Subsurface(color=held(color), radius=far)
     g = values.number(translator.constant(anisotropy, 0.0))
