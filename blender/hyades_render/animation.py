@@ -175,10 +175,13 @@ def _after_render(scene: Any) -> list[Complaint]:
     if len(layers) > 1:
         others = ", ".join(f"'{name}'" for name in layers[1:])
         found.append(Complaint("output", f"view layer '{layers[0]}' is rendered, not {others}"))
-    nodes = scene.node_tree.nodes if scene.use_nodes and scene.node_tree is not None else ()
+    tree = getattr(scene, "node_tree", None) or getattr(scene, "compositing_node_group", None)  # since Blender 5
+    nodes = tree.nodes if scene.use_nodes and tree is not None else ()
     if render.use_compositing and any(node.type not in _PLAIN_COMPOSITE and not node.mute for node in nodes):
         found.append(Complaint("output", "nodes of the compositor are left out"))
-    if render.use_sequencer and scene.sequence_editor is not None and len(scene.sequence_editor.sequences):
+    editor = scene.sequence_editor
+    strips = getattr(editor, "strips", None) or getattr(editor, "sequences", ())  # since Blender 4.4, and before
+    if render.use_sequencer and len(strips):
         found.append(Complaint("output", "strips of the sequencer are left out: the scene is rendered"))
     if render.use_stamp:
         found.append(Complaint("output", "nothing is burned into the picture: metadata are left out"))
