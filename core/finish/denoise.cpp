@@ -192,8 +192,10 @@ std::vector<Rgb> filter(GuidedPicture picture, float samples, int threads) {
   picture.variance = blurred(own, picture.width, picture.height, variance_radius(samples));
   // Averaging carries the noise of edges and lamps to what is beside them, and away from single
   // pixels that a few lucky paths have brightened: those are alike to nothing then, and stay.
-  for (size_t i = 0; i < guess.size(); ++i)
-    picture.variance[i] = glm::max(glm::min(picture.variance[i], guess[i]), own[i]);
+  for (size_t i = 0; i < guess.size(); ++i) {
+    const Rgb least = known ? own[i] : Rgb(0.0F);
+    picture.variance[i] = glm::max(glm::min(picture.variance[i], guess[i]), least);
+  }
   return filter_by_features(picture, threads);
 }
 

@@ -207,12 +207,12 @@ void MapReader::name_of(std::string_view key, std::string& target, NameKind kind
                                        "an object's name", "a medium's name"};
   static const char* const kRooms[] = {"textures", "materials", "groups", "objects", "media"};
   const auto k = static_cast<size_t>(kind);
-  if (listing()) tell(key, {.takes = kNouns[k]});
   const YamlNode* node = find(key);
   if (node != nullptr && node->kind == YamlNode::Kind::map)
     return mismatch(key, *node, fmt::format("{}, which stands in '{}'", kNouns[k], kRooms[k]));
   std::string name;
   text(key, name, kNouns[k]);
+  if (listing()) tell(key, {.takes = kNouns[k]});
   if (name.empty()) return;
   target = name;
   const std::string label = what_.empty() ? std::string(key) : fmt::format("{} of {}", key, what_);
