@@ -33,7 +33,7 @@ class ThreadPool {
 
  private:
   void work() HYADES_EXCLUDES(mutex_);
-  /// Takes the owner whose turn it is; none: nothing waits, or theirs have their share.
+  /// The owner whose turn it is; none: nothing waits, or theirs have their share.
   std::deque<std::string>::iterator next_owner() HYADES_REQUIRES(mutex_);
 
   const size_t most_waiting_;

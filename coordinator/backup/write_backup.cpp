@@ -225,7 +225,7 @@ class Writer {
   std::vector<std::string> log_files(const std::string& folder) const {
     auto files = files_below(folder);
     std::erase_if(files, [](const std::string& file) {
-      return file.ends_with(".tmp") || file.ends_with(".lock");
+      return file.ends_with(".tmp") || file.ends_with(".lock") || file.ends_with(".aside");
     });
     return files;
   }

@@ -242,9 +242,9 @@ grpc::Status JobIntake::files_are_here(const v1::JobSpec& spec) {
 }
 
 /// Waits for what is left of a job whose end is being stored.
-grpc::Status JobIntake::wait_until_left(uint64_t id) {
-  const TimePoint patience = std::chrono::steady_clock::now() + kLeavePatience;
-  if (jobs_.wait_until_left(id, patience, context_.stop)) return grpc::Status::OK;
+grpc::Status JobIntake::wait_until_left(uint64_t id, Duration patience) {
+  const TimePoint end = std::chrono::steady_clock::now() + patience;
+  if (jobs_.wait_until_left(id, end, context_.stop)) return grpc::Status::OK;
   return farm::retry_later(grpc::StatusCode::UNAVAILABLE,
                            fmt::format("the end of job {} is still being stored", id),
                            std::chrono::seconds(1));
@@ -255,6 +255,11 @@ void JobIntake::retry(uint64_t id, const JobReply& then) {
   // A long document takes seconds, and others submit meanwhile.
   std::optional<JobRead> read = read_ahead(id);
   if (read && read->obstacle == Obstacle::others_are_read) return then(others_are_read(), now);
+  // What is left of a job may take its time, and others submit meanwhile.
+  if (read) {
+    if (const grpc::Status left = wait_until_left(id, kLeavePatience); !left.ok())
+      return then(left, now);
+  }
   auto one = context_.wait_for_submissions();
   if (!one) return then(others_submit(), now);
   bool open = false;
@@ -286,7 +291,7 @@ std::optional<JobRead> JobIntake::read_ahead(uint64_t id) {
 /// A job that has ended is open again. Lets go of `one` once nobody else can take it up or away.
 grpc::Status JobIntake::reopen(uint64_t id, std::optional<JobRead> read,
                                std::unique_lock<std::timed_mutex> one, v1::Job& now) {
-  if (const grpc::Status left = wait_until_left(id); !left.ok()) return left;
+  if (const grpc::Status left = wait_until_left(id, {}); !left.ok()) return left;
   StoredJob job;
   if (const grpc::Status may = may_reopen(id, job); !may.ok()) return may;
   if (!read) {
@@ -340,7 +345,7 @@ grpc::Status JobIntake::may_reopen(uint64_t id, StoredJob& job) {
 }
 
 /// Whether the job has ended, and what is left of it is stored.
-grpc::Status JobIntake::may_remove(uint64_t id) {
+grpc::Status JobIntake::may_remove(uint64_t id, Duration patience) {
   {
     const StateLock lock(context_.mutex);
     const ActiveJob* active = jobs_.find(id);
@@ -350,11 +355,11 @@ grpc::Status JobIntake::may_remove(uint64_t id) {
     }
     if (jobs_.recovering().contains(id)) return is_taken_up(id);
   }
-  return wait_until_left(id);
+  return wait_until_left(id, patience);
 }
 
 grpc::Status JobIntake::remove(uint64_t id) {
-  if (const grpc::Status may = may_remove(id); !may.ok()) return may;
+  if (const grpc::Status may = may_remove(id, kLeavePatience); !may.ok()) return may;
   const auto stored = context_.store->job(id);
   if (const grpc::Status there = job_is_there(id, stored); !there.ok()) return there;
   // Its files have been of use until now: they stay for a while, should it come again. They may be
@@ -371,7 +376,7 @@ grpc::Status JobIntake::remove(uint64_t id) {
     const auto one = context_.wait_for_submissions();
     if (!one) return others_submit();
     // Somebody may have retried or removed it.
-    if (const grpc::Status may = may_remove(id); !may.ok()) return may;
+    if (const grpc::Status may = may_remove(id, {}); !may.ok()) return may;
     const auto still = context_.store->state(id);
     if (const grpc::Status there = job_is_there(id, still); !there.ok()) return there;
     if (core::Status gone = forget(id); !gone) return farm::unavailable(gone.error());

@@ -73,8 +73,8 @@ class JobIntake {
   grpc::Status has_room_for(const std::string& owner, const JobRoom& more) const
       HYADES_EXCLUDES(state_lock);
   grpc::Status files_are_here(const v1::JobSpec& spec);
-  grpc::Status wait_until_left(uint64_t job) HYADES_EXCLUDES(state_lock);
-  grpc::Status may_remove(uint64_t job) HYADES_EXCLUDES(state_lock);
+  grpc::Status wait_until_left(uint64_t job, Duration patience) HYADES_EXCLUDES(state_lock);
+  grpc::Status may_remove(uint64_t job, Duration patience) HYADES_EXCLUDES(state_lock);
 
   ControllerContext& context_;
   Dispatcher& dispatcher_;

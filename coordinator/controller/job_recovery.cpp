@@ -44,6 +44,10 @@ uint32_t frames_at_once(const ActiveJob& active, uint64_t film_memory) HYADES_RE
   return static_cast<uint32_t>(std::clamp<uint64_t>(film_memory / 2 / film, 1, wanted));
 }
 
+std::string reason_to_wait(const core::Error& why) {
+  return "waits to be taken up again: " + why.message;
+}
+
 /// What workers are told of the job; takes its spec.
 grpc::ByteBuffer brief_of(ActiveJob& active) {
   v1::CoordinatorMessage told;
@@ -184,15 +188,8 @@ bool JobRecovery::recover_later(uint64_t id) {
   const core::Result<bool> over = try_to_recover(id);
   if (over && !*over) return false;
   if (!over) {
-    // Perhaps the disk is full, or does not answer: the job waits, and says why.
-    const std::string why = "waits to be taken up again: " + over.error().message;
-    auto stored = context_.store->job(id);
-    if (stored && *stored && (*stored)->reason != why) {
-      (*stored)->reason = why;
-      (void)context_.store->update_job(**stored);
-    }
     const StateLock lock(context_.mutex);
-    jobs_.still_waits(id, why);
+    jobs_.still_waits(id, reason_to_wait(over.error()));
     return false;
   }
   const StateLock lock(context_.mutex);
@@ -221,6 +218,14 @@ core::Result<bool> JobRecovery::try_to_recover(uint64_t id) {
   const core::Status recovered = recover(id, std::move(again), kRestarted);
   if (recovered || (obstacle == Obstacle::lasting && give_up(id, recovered.error()))) return true;
   if (obstacle == Obstacle::others_are_read) return false;
+  // Perhaps the disk is full, or does not answer: the job waits, and says why. Nobody ends it
+  // meanwhile.
+  const std::string why = reason_to_wait(recovered.error());
+  auto stored = context_.store->job(id);
+  if (stored && *stored && (*stored)->reason != why) {
+    (*stored)->reason = why;
+    (void)context_.store->update_job(**stored);
+  }
   return recovered.error();
 }
 
@@ -465,7 +470,10 @@ core::Status JobRecovery::start(std::unique_ptr<ActiveJob> owned, RestoredJob re
   const bool films = std::filesystem::exists(context_.films_folder(active.stored.id), unknown);
   if (unknown)
     return core::Error{context_.films_folder(active.stored.id) + ": " + unknown.message()};
+  // One job's films come into memory at a time, and count once the scheduler knows the job.
+  std::optional<core::MutexLock> alone;
   if (films) {
+    alone.emplace(loading_);
     active.film_store = films_.make(active, true);
     auto contents = active.film_store->open();
     if (!contents) return contents.error();

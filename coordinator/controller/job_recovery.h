@@ -83,6 +83,7 @@ class JobRecovery {
   Dispatcher& dispatcher_;
   JobTable& jobs_;
   JobFilms& films_;
+  core::Mutex loading_;  ///< held while a job's films are read, before the state lock
   core::Mutex mutex_;
   core::CondVar tried_;
   size_t not_tried_ HYADES_GUARDED_BY(mutex_) = 0;  ///< of recover_all()'s

@@ -66,9 +66,8 @@ std::unique_ptr<JobTable::Recovery> JobTable::begin_recovery(uint64_t job, Recov
 }
 
 JobTable::Recovery::~Recovery() {
-  if (table_ == nullptr) return;
-  const StateLock lock(table_->mutex_);
-  table_->recovering_.erase(job_);
+  const StateLock lock(table_.mutex_);
+  table_.recovering_.erase(job_);
 }
 
 void JobTable::note(ActiveJob& job, v1::LogLevel level, std::optional<int32_t> frame,

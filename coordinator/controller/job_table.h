@@ -28,13 +28,13 @@ class JobTable {
   /// Its owner alone recovers the job, as long as it lives.
   class Recovery {
    public:
-    Recovery(JobTable& table, uint64_t job) : table_(&table), job_(job) {}
+    Recovery(JobTable& table, uint64_t job) : table_(table), job_(job) {}
     Recovery(const Recovery&) = delete;
     Recovery& operator=(const Recovery&) = delete;
     ~Recovery();
 
    private:
-    JobTable* table_;
+    JobTable& table_;
     uint64_t job_;
   };
 

@@ -31,10 +31,11 @@ bool empty_folder(int folder, uint64_t& most, int depth) {
     if (std::string_view(name) == "." || std::string_view(name) == "..") continue;
     through = most > 0;
     if (!through) break;
-    if (::unlinkat(folder, name, 0) == 0 || errno != EISDIR) {
+    if (::unlinkat(folder, name, 0) == 0) {
       --most;
       continue;
     }
+    if (errno != EISDIR) continue;  // it stays, and is not counted: what counts comes again
     if (depth == kDeepest) {
       std::error_code ignored;
       std::filesystem::remove_all(fmt::format("/proc/self/fd/{}/{}", folder, name), ignored);

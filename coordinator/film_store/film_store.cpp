@@ -56,6 +56,8 @@ FilmStore::~FilmStore() {
   for (const Item& item : left) {
     if (item.call) item.call();
   }
+  // The log has all of them.
+  while (!aside_.empty()) remove_aside(aside_.begin()->first);
   log_.reset();
 }
 

@@ -1,7 +1,6 @@
 #include "coordinator/scheduler/film_budget.h"
 
 #include <algorithm>
-#include <limits>
 #include <utility>
 
 namespace hyades::coordinator {

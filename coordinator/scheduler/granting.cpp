@@ -227,6 +227,8 @@ std::optional<FramePlace> Granting::next_of(const FairShare& share, WorkerId id,
       const FramePlace place{job, slot};
       const FrameSlot& frame = place.frame();
       if (frame.phase == FramePhase::rendering && !frame.film) {
+        // One that was set aside may have nothing for anybody who is here.
+        if (!has_units_for(*job, frame, id, worker)) continue;
         const bool fits = film_fits(*job, frame);
         own = own || !fits;
         begun = begun || (!fits && !films_.most_are_of(*job));
@@ -268,7 +270,13 @@ Granting::Welcome Granting::welcome_at(const FramePlace& place, WorkerId id, con
 /// Whether there is something of the frame for this worker.
 bool Granting::has_work_for(const ScheduledJob& job, const FrameSlot& slot, WorkerId id,
                             const Worker& worker) const {
-  if (slot.phase != FramePhase::rendering || !film_fits(job, slot)) return false;
+  return slot.phase == FramePhase::rendering && has_units_for(job, slot, id, worker) &&
+         film_fits(job, slot);
+}
+
+/// Whether there is something of the frame, which is in work, for this worker, if its film fits.
+bool Granting::has_units_for(const ScheduledJob& job, const FrameSlot& slot, WorkerId id,
+                             const Worker& worker) const {
   if (!workers_.may_render(job, slot, worker)) return false;
   const auto judge = judge_of(workers_, job, id, worker);
   const MayTry allowed = std::ref(judge);

@@ -63,6 +63,8 @@ class Granting {
                                     bool begun) const;
   std::optional<FramePlace> find_loaded(WorkerId id, const Worker& worker,
                                         const ScheduledJob& first, bool loads) const;
+  bool has_units_for(const ScheduledJob& job, const FrameSlot& slot, WorkerId id,
+                     const Worker& worker) const;
   bool has_work_for(const ScheduledJob& job, const FrameSlot& slot, WorkerId id,
                     const Worker& worker) const;
   uint32_t run_length_of(const ScheduledJob& job, const FrameSlot& slot, uint32_t tile) const;

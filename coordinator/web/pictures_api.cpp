@@ -215,7 +215,9 @@ std::optional<PicturesApi::FrameId> PicturesApi::begin_next() {
   double least = 0;
   for (auto one = queue_.begin(); one != queue_.end(); ++one) {
     const double used = shares_.used(one->second, now);
-    if (has_one(one->second) || (best != queue_.end() && used >= least)) continue;
+    // What was asked for while the pictures before are sent comes after them.
+    if (in_work_.contains(one->first) || has_one(one->second)) continue;
+    if (best != queue_.end() && used >= least) continue;
     best = one;
     least = used;
   }

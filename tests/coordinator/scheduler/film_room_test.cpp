@@ -158,6 +158,25 @@ TEST_F(FilmRoom, JobsWithoutWorkersHoldNobodyUp) {
   expect_bert_gets(kOther);
 }
 
+/// One that waits for somebody else to render it too would else want all the room, once it is aside.
+TEST_F(FilmRoom, AFrameThatIsAsideAndThatNobodyMayWorkAtHoldsNobodyUp) {
+  b.tell(WorkerLost{kBert});
+  JobPlan checked = plan(90);
+  checked.redundancy = 100;
+  add(kJob, checked);
+  b.deliver_durably(b.ask(kAnna));
+  JobPlan others = plan(30);
+  others.frames = {1, 2};
+  add(kOther, others);
+  b.tell(FrameOpened{kOther, 2});
+  b.tell(WorkRequested{kAnna, 1});
+  EXPECT_TRUE(b.all<Lease>().empty());
+  for (int i = 0; i < 12 && b.all<SetAside>().empty(); ++i) tick();
+  b.tell(FilmSetAside{b.only<SetAside>().job, 1, true});
+  EXPECT_EQ(b.only<Lease>().job, kOther);
+  EXPECT_EQ(b.ask(kAnna).job, kOther) << "the other frame begins beside it";
+}
+
 TEST_F(FilmRoom, WhereFilmsCannotBeSetAsideThereIsALittleMoreRoom) {
   add(kJob, plan(60, 2));
   b.deliver_durably(b.ask(kAnna));

@@ -8,6 +8,7 @@
 #include <optional>
 #include <set>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "coordinator/web/pictures_api.h"
@@ -199,6 +200,23 @@ TEST_F(UnreadPictures, OneCallerWaitsForOneFilmAtATime) {
   ASSERT_TRUE(served) << "ada's films were all that were waited for";
   EXPECT_EQ(bob.get(), 200U);
   for (std::promise<unsigned>& ada : adas) EXPECT_EQ(ada.get_future().get(), 200U);
+}
+
+/// Who asks while pictures of the same film are being sent comes after them.
+TEST_F(UnreadPictures, WhatIsAskedForWhileOthersAreSentComesLater) {
+  start(false);
+  std::promise<unsigned> bobs;
+  std::promise<unsigned> adas;
+  ask("ada", 20, [&](const WebReply& reply) {
+    ask("bob", 30, [&](const WebReply& other) { bobs.set_value(other.status); });
+    std::this_thread::sleep_for(300ms);  // it is begun with, if it may
+    adas.set_value(reply.status);
+  });
+  EXPECT_EQ(adas.get_future().get(), 200U);
+  auto bob = bobs.get_future();
+  ASSERT_EQ(bob.wait_for(20s), std::future_status::ready);
+  EXPECT_EQ(bob.get(), 200U);
+  EXPECT_EQ(answer_to("ada", 31).status, 200);
 }
 
 }  // namespace
