@@ -158,7 +158,8 @@ TEST_F(FilmRoom, JobsWithoutWorkersHoldNobodyUp) {
   expect_bert_gets(kOther);
 }
 
-/// One that waits for somebody else to render it too would else want all the room, once it is aside.
+/// One that waits for somebody else to render it too would else want all the room, once it is
+/// aside.
 TEST_F(FilmRoom, AFrameThatIsAsideAndThatNobodyMayWorkAtHoldsNobodyUp) {
   b.tell(WorkerLost{kBert});
   JobPlan checked = plan(90);
