@@ -193,6 +193,7 @@ TEST_F(UnreadPictures, OneCallerWaitsForOneFilmAtATime) {
   for (size_t i = 0; i < 2; ++i) {
     ask("ada", jobs[i], 16, [&, i](const WebReply& reply) { adas[i].set_value(reply.status); });
   }
+  std::this_thread::sleep_for(300ms);  // both would be begun with, if they might
   ask("bob", jobs[2], 16, [&](const WebReply& reply) { bobs.set_value(reply.status); });
   auto bob = bobs.get_future();
   const bool served = bob.wait_for(20s) == std::future_status::ready;
