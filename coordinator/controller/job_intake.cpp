@@ -89,12 +89,6 @@ core::Result<v1::Job> read_options(const v1::SubmitRequest& request) {
   return options;
 }
 
-grpc::Status is_taken_up(uint64_t id) {
-  return farm::retry_later(grpc::StatusCode::UNAVAILABLE,
-                           fmt::format("job {} is just being taken up", id),
-                           std::chrono::seconds(1));
-}
-
 /// What is stored of a new job, but for what its document says.
 StoredJob new_row(const v1::SubmitRequest& request, const v1::Job& options, bool owner_proven) {
   StoredJob row;

@@ -24,12 +24,10 @@ namespace {
 /// Films of a progressive job that may be in memory together, and frames that may be.
 constexpr uint64_t kProgressiveBytes = uint64_t{2} << 30U;
 constexpr uint64_t kMostAtOnce = 256;
-/// Rows of frames that are read at a time.
-constexpr uint32_t kFramesAtOnce = 1000;
+/// Rows of frames or outputs that are read at a time.
+constexpr uint32_t kRowsAtOnce = 1000;
 /// For the documents of others to be read: a few of the longest. Who reopens a job asks once.
 constexpr std::chrono::seconds kRecoveryPatience{30};
-
-constexpr uint32_t kOutputsAtOnce = 1000;
 
 /// What a job's log says where it goes on by itself.
 constexpr const char* kRestarted = "goes on: the coordinator has been started again";
@@ -163,7 +161,7 @@ core::Status JobRecovery::recover_all() {
 
 void JobRecovery::recover_in_background(uint64_t id) {
   StoredJob waiting;
-  if (auto stored = context_.store->job(id); stored && *stored) waiting = std::move(**stored);
+  if (auto stored = context_.store->summary(id); stored && *stored) waiting = std::move(**stored);
   waiting.id = id;
   waiting.reason = "waits to be taken up again: the coordinator has just been started";
   const std::string owner = waiting.owner;
@@ -186,13 +184,9 @@ void JobRecovery::recover_in_background(uint64_t id) {
 /// Whether there is nothing left to try; for the job's tasks.
 bool JobRecovery::recover_later(uint64_t id) {
   const core::Result<bool> over = try_to_recover(id);
-  if (over && !*over) return false;
-  if (!over) {
-    const StateLock lock(context_.mutex);
-    jobs_.still_waits(id, reason_to_wait(over.error()));
-    return false;
-  }
   const StateLock lock(context_.mutex);
+  if (!over) jobs_.still_waits(id, reason_to_wait(over.error()));
+  if (!over || !*over) return false;
   jobs_.no_longer_waits(id);
   return true;
 }
@@ -221,7 +215,7 @@ core::Result<bool> JobRecovery::try_to_recover(uint64_t id) {
   // Perhaps the disk is full, or does not answer: the job waits, and says why. Nobody ends it
   // meanwhile.
   const std::string why = reason_to_wait(recovered.error());
-  auto stored = context_.store->job(id);
+  auto stored = context_.store->summary(id);
   if (stored && *stored && (*stored)->reason != why) {
     (*stored)->reason = why;
     (void)context_.store->update_job(**stored);
@@ -267,7 +261,7 @@ core::Result<std::vector<StoredFrame>> JobRecovery::frames_over(ActiveJob& activ
   std::vector<StoredFrame> all;
   std::optional<int32_t> after;
   for (;;) {
-    auto page = context_.store->frames(static_cast<uint64_t>(active.id), after, kFramesAtOnce);
+    auto page = context_.store->frames(static_cast<uint64_t>(active.id), after, kRowsAtOnce);
     if (!page) return page.error();
     if (page->empty()) return all;
     after = page->back().frame;
@@ -327,7 +321,7 @@ core::Result<std::vector<StoredOutput>> JobRecovery::lost_outputs(uint64_t id) c
   std::vector<StoredOutput> lost;
   for (uint64_t after = 0;;) {
     // Of a long job there are very many, and others need the store too.
-    const auto outputs = context_.store->outputs(id, after, kOutputsAtOnce);
+    const auto outputs = context_.store->outputs(id, after, kRowsAtOnce);
     if (!outputs) return outputs.error();
     for (const StoredOutput& output : *outputs) {
       after = output.number;
@@ -341,7 +335,7 @@ core::Result<std::vector<StoredOutput>> JobRecovery::lost_outputs(uint64_t id) c
       }
       if (failed || size != output.size) lost.push_back(output);
     }
-    if (outputs->size() < kOutputsAtOnce) return lost;
+    if (outputs->size() < kRowsAtOnce) return lost;
   }
 }
 

@@ -121,9 +121,7 @@ grpc::Status JobSteering::cancel_waiting(uint64_t id, v1::Job& now) {
   auto stored = context_.store->summary(id);
   if (!stored) return farm::unavailable(stored.error());
   if (!one || !waits() || !*stored || has_ended((*stored)->state)) {
-    return farm::retry_later(grpc::StatusCode::UNAVAILABLE,
-                             fmt::format("job {} is just being taken up", id),
-                             std::chrono::seconds(1));
+    return is_taken_up(id);
   }
   (*stored)->state = StoredState::cancelled;
   (*stored)->ended_ms = core::wall_ms();
@@ -134,6 +132,12 @@ grpc::Status JobSteering::cancel_waiting(uint64_t id, v1::Job& now) {
   const StateLock lock(context_.mutex);
   jobs_.no_longer_waits(id);
   return grpc::Status::OK;
+}
+
+grpc::Status is_taken_up(uint64_t id) {
+  return farm::retry_later(grpc::StatusCode::UNAVAILABLE,
+                           fmt::format("job {} is just being taken up", id),
+                           std::chrono::seconds(1));
 }
 
 grpc::Status why_not_open(JobStore& store, uint64_t id) {

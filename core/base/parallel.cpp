@@ -102,10 +102,10 @@ Status parallel_for(size_t count, int threads, const std::function<void(size_t)>
   Loop loop(count, grain, body);
   std::vector<std::thread> helpers;
   helpers.reserve(useful);
-  try {
-    for (size_t i = 1; i < useful; ++i) helpers.emplace_back([&loop] { loop.run(); });
-  } catch (const std::system_error&) {
-    // The system gives no more threads: those that are there do the work.
+  for (size_t i = 1; i < useful; ++i) {
+    auto helper = start_thread([&loop] { loop.run(); });
+    if (!helper) break;  // those that are there do the work
+    helpers.push_back(std::move(*helper));
   }
   loop.run();
   for (std::thread& helper : helpers) helper.join();
