@@ -24,8 +24,6 @@ namespace {
 /// Films of a progressive job that may be in memory together, and frames that may be.
 constexpr uint64_t kProgressiveBytes = uint64_t{2} << 30U;
 constexpr uint64_t kMostAtOnce = 256;
-/// Rows of frames or outputs that are read at a time.
-constexpr uint32_t kRowsAtOnce = 1000;
 /// For the documents of others to be read: a few of the longest. Who reopens a job asks once.
 constexpr std::chrono::seconds kRecoveryPatience{30};
 

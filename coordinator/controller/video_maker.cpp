@@ -31,7 +31,6 @@ namespace {
 constexpr size_t kMostWaiting = 64;
 constexpr size_t kMostWaitingOfOne = 8;
 constexpr size_t kMostKept = 200;  ///< that were asked for, with what became of them
-constexpr uint32_t kRowsAtOnce = 1000;
 /// Keys of videos that were asked for: others are of jobs.
 constexpr uint64_t kAsked = uint64_t{1} << 63U;
 

@@ -125,6 +125,9 @@ struct TokenUse {
   int64_t used_ms = 0;
 };
 
+/// Rows that are read, or forgotten, in one call; others have their turn before the next.
+inline constexpr uint32_t kRowsAtOnce = 1000;
+
 /// The most lines that are kept of a job; the oldest go first, in groups of kLinesDropped.
 inline constexpr uint64_t kMostLines = 50'000;
 inline constexpr uint64_t kLinesDropped = 5'000;

@@ -33,9 +33,6 @@ constexpr std::string_view kJobColumns =
     "submitted_ms, ended_ms, reason, core_ns, preview, owner_proven, options, "
     "samples_done, begun_ms, busy_ns";
 
-/// That are read, or forgotten, before others have their turn.
-constexpr uint32_t kRowsAtOnce = 1000;
-
 constexpr int64_t kMsPerHour = 3'600'000;
 
 /// A few times what the largest transaction that frees room needs in the WAL.

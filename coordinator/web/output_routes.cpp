@@ -23,7 +23,6 @@
 namespace hyades::coordinator {
 namespace {
 
-constexpr uint32_t kRowsAtOnce = 1000;
 /// Of what an archive in the making knows of its files: more than a hundred thousand.
 constexpr uint64_t kMostArchiveBytes = uint64_t{32} << 20U;
 /// Of an answer: some two megabytes.
