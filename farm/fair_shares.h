@@ -2,6 +2,7 @@
 
 #include <chrono>
 #include <cstddef>
+#include <limits>
 #include <map>
 #include <string>
 
@@ -19,6 +20,23 @@ class FairShares {
   /// What `who` has used: what was ten minutes ago counts half, and so on. 0 for who is not known,
   /// or not any more, as of very many only those are who have used most.
   double used(const std::string& who, Time now) const;
+
+  /// Of those who wait in [first, last) the first one whose owner has used least; `last` where none
+  /// may be next. `owner_of(*one)` is the owner's name, null for one that may not be next.
+  template <class Iterator, class OwnerOf>
+  Iterator next(Iterator first, Iterator last, Time now, const OwnerOf& owner_of) const {
+    Iterator best = last;
+    double least = std::numeric_limits<double>::infinity();
+    for (; first != last && least > 0; ++first) {
+      const std::string* owner = owner_of(*first);
+      if (owner == nullptr) continue;
+      const double its = used(*owner, now);
+      if (its >= least) continue;
+      least = its;
+      best = first;
+    }
+    return best;
+  }
 
  private:
   struct Share {

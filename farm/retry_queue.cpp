@@ -1,6 +1,5 @@
 #include "farm/retry_queue.h"
 
-#include <limits>
 #include <utility>
 
 namespace hyades::farm {
@@ -43,17 +42,13 @@ void RetryQueue::wake_due(Time now) {
 }
 
 std::optional<uint64_t> RetryQueue::take_next(Time now) {
-  auto best = ready_.end();
-  double least = std::numeric_limits<double>::infinity();
-  for (auto key = ready_.begin(); key != ready_.end() && least > 0; ++key) {
-    const std::string& owner = tasks_.at(*key).owner;
-    const auto his = in_work_of_.find(owner);
-    if (his != in_work_of_.end() && his->second >= of_one_) continue;
-    const double used = shares_.used(owner, now);
-    if (used >= least) continue;
-    least = used;
-    best = key;
-  }
+  const auto best =
+      shares_.next(ready_.begin(), ready_.end(), now,
+                   [&](uint64_t key) HYADES_REQUIRES(mutex_) -> const std::string* {
+                     const std::string& owner = tasks_.at(key).owner;
+                     const auto his = in_work_of_.find(owner);
+                     return his != in_work_of_.end() && his->second >= of_one_ ? nullptr : &owner;
+                   });
   if (best == ready_.end()) return std::nullopt;
   const uint64_t next = *best;
   ready_.erase(best);

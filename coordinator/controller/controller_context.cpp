@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "coordinator/controller/active_job.h"
 #include "coordinator/meters/meters.h"
 #include "core/base/wall_clock.h"
 
@@ -28,6 +29,10 @@ std::string ControllerContext::output_folder(uint64_t job) const {
 
 std::string ControllerContext::films_folder(uint64_t job) const {
   return fmt::format("{}/films/{}", options.folder, job);
+}
+
+void ControllerContext::in_background(const ActiveJob& active, farm::RetryQueue::Task task) {
+  background.add(active.stored.id, std::move(task), active.stored.owner);
 }
 
 }  // namespace hyades::coordinator

@@ -18,6 +18,7 @@
 
 namespace hyades::coordinator {
 
+struct ActiveJob;
 class Meters;
 
 /// What all parts of a controller have in common. It is made before them and outlives them.
@@ -53,6 +54,9 @@ struct ControllerContext {
   /// threads are for other owners than the one who has most to store.
   farm::RetryQueue background{4, std::chrono::seconds(1), 2};
   static constexpr uint64_t kWorkersKey = 0;  ///< no job has this number
+  /// Adds a task of an open job's, for its owner.
+  void in_background(const ActiveJob& active, farm::RetryQueue::Task task)
+      HYADES_REQUIRES(state_lock);
   /// Waits for what is left of jobs that have ended, by their ids: seconds, where much of a film
   /// has still to be written.
   farm::RetryQueue closing{4, std::chrono::seconds(1), 2};

@@ -101,8 +101,7 @@ bool DivergentWorkers::store(const Found& found) {
     const uint64_t id = job.job;
     const ActiveJob* active = jobs_.find(id);
     if (active == nullptr) continue;
-    context_.background.add(
-        id, [this, job = std::move(job)] { return suspect_frames(job); }, active->stored.owner);
+    context_.in_background(*active, [this, job = std::move(job)] { return suspect_frames(job); });
   }
   turn.tell(Persisted{found.record});
   return true;
@@ -117,9 +116,8 @@ bool DivergentWorkers::suspect_frames(const JobFrames& suspected) {
   const auto cut = suspected.frames.begin() + static_cast<ptrdiff_t>(now);
   if (cut != suspected.frames.end()) {
     JobFrames rest{suspected.job, {cut, suspected.frames.end()}};
-    context_.background.add(
-        suspected.job, [this, rest = std::move(rest)] { return suspect_frames(rest); },
-        active->stored.owner);
+    context_.in_background(*active,
+                           [this, rest = std::move(rest)] { return suspect_frames(rest); });
   }
   turn.tell(FramesSuspected{active->id, {suspected.frames.begin(), cut}});
   return true;

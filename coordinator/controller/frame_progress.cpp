@@ -170,13 +170,10 @@ void FrameProgress::reopened(ActiveJob& active, const FrameReopened& action) {
   jobs_.note(active, v1::LOG_LEVEL_WARNING, frame, {},
              "is not done: a unit that was rendered differently twice is rendered once more");
   // Should this be lost, or come after the frame is done again, it is rendered again or stays.
-  context_.background.add(
-      active.stored.id,
-      [this, id = active.stored.id, frame] {
-        (void)context_.store->forget_frames(id, {&frame, 1});
-        return true;
-      },
-      active.stored.owner);
+  context_.in_background(active, [this, id = active.stored.id, frame] {
+    (void)context_.store->forget_frames(id, {&frame, 1});
+    return true;
+  });
 }
 
 void FrameProgress::finish(ActiveJob& active, const FinishFrame& finish) {

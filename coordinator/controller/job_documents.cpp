@@ -143,11 +143,8 @@ bool JobDocuments::begin_turn(Time give_up, const std::string& owner) {
 
 /// Of those who wait, the first for whose owner least was read lately.
 uint64_t JobDocuments::next_reader(Time now) const {
-  const auto next =
-      std::min_element(waiting_.begin(), waiting_.end(),
-                       [&](const Waiting& a, const Waiting& b) HYADES_REQUIRES(mutex_) {
-                         return shares_.used(a.owner, now) < shares_.used(b.owner, now);
-                       });
+  const auto next = shares_.next(waiting_.begin(), waiting_.end(), now,
+                                 [](const Waiting& one) { return &one.owner; });
   return next->number;
 }
 

@@ -76,9 +76,7 @@ void JobFilms::restart_frame(const ActiveJob& active, RecordId id,
   std::deque<Restart>& waiting = restarts_[again.job];
   waiting.push_back({id, again});
   if (waiting.size() > 1) return;
-  context_.background.add(
-      static_cast<uint64_t>(again.job), [this, job = again.job] { return restart_some(job); },
-      active.stored.owner);
+  context_.in_background(active, [this, job = again.job] { return restart_some(job); });
 }
 
 /// Many frames may begin again together: each by itself would wait for the disk.
@@ -107,8 +105,7 @@ bool JobFilms::restart_some(JobId job) {
   if (waiting.empty()) {
     restarts_.erase(job);
   } else {
-    context_.background.add(
-        static_cast<uint64_t>(job), [this, job] { return restart_some(job); }, still->stored.owner);
+    context_.in_background(*still, [this, job] { return restart_some(job); });
   }
   return true;
 }
@@ -117,20 +114,17 @@ void JobFilms::fail_frame(ActiveJob& active, RecordId id, const FrameFailedRecor
   const FailedFrame& failed = record.failed;
   const FrameNote& note = active.frames[failed.frame];
   StoredFrame frame{failed.frame, false, failed.reason, note.worker_class, note.restarts};
-  context_.background.add(
-      active.stored.id,
-      [this, id, record, frame] {
-        const core::Status stored =
-            context_.store->frame_over(static_cast<uint64_t>(record.job), frame, {});
-        const StateLock lock(context_.mutex);
-        ActiveJob* still = jobs_.find(record.job);
-        if (still == nullptr) return true;
-        // Where it could not be stored the frame fails again after a restart, if it must.
-        if (!stored) still->trouble = stored.error().message;
-        of(*still).append(id, record);
-        return true;
-      },
-      active.stored.owner);
+  context_.in_background(active, [this, id, record, frame] {
+    const core::Status stored =
+        context_.store->frame_over(static_cast<uint64_t>(record.job), frame, {});
+    const StateLock lock(context_.mutex);
+    ActiveJob* still = jobs_.find(record.job);
+    if (still == nullptr) return true;
+    // Where it could not be stored the frame fails again after a restart, if it must.
+    if (!stored) still->trouble = stored.error().message;
+    of(*still).append(id, record);
+    return true;
+  });
 }
 
 std::unique_ptr<FilmStore> JobFilms::make(ActiveJob& active, bool resume) {
@@ -165,8 +159,7 @@ void JobFilms::set_aside(const SetAside& aside, Turn& turn) {
 FilmStore& JobFilms::of(ActiveJob& active) {
   if (!active.film_store) {
     active.film_store = make(active, false);
-    context_.background.add(
-        active.stored.id, [this, job = active.id] { return open(job); }, active.stored.owner);
+    context_.in_background(active, [this, job = active.id] { return open(job); });
   }
   return *active.film_store;
 }

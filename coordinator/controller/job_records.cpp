@@ -66,9 +66,7 @@ void JobRecords::answer(uint64_t key, uint64_t number) {
 
 void JobRecords::store(ActiveJob& active) {
   if (std::exchange(active.storing_row, true)) return;
-  context_.background.add(
-      active.stored.id, [this, id = active.stored.id] { return store_now(id); },
-      active.stored.owner);
+  context_.in_background(active, [this, id = active.stored.id] { return store_now(id); });
 }
 
 bool JobRecords::store_now(uint64_t id) {
@@ -142,9 +140,7 @@ void JobRecords::look_after(TimePoint now, bool disk_full, const Scheduler& sche
       store(*active);
     }
     if (!active->log.begin_storing(now)) continue;
-    context_.background.add(
-        active->stored.id, [this, id = active->id] { return store_lines(id); },
-        active->stored.owner);
+    context_.in_background(*active, [this, id = active->id] { return store_lines(id); });
   }
 }
 
@@ -186,8 +182,7 @@ void JobRecords::end(ActiveJob& active, bool cancelled, const std::string& why) 
   jobs_.note(active, v1::LOG_LEVEL_INFO, std::nullopt, {},
              fmt::format("ended: {} done, {} failed{}", core::counted(stored.frames_done, "frame"),
                          stored.frames_failed, cancelled ? ", cancelled" : ""));
-  context_.background.add(
-      stored.id, [this, id = stored.id] { return store_end(id); }, stored.owner);
+  context_.in_background(active, [this, id = stored.id] { return store_end(id); });
 }
 
 bool JobRecords::store_end(uint64_t id) {

@@ -211,16 +211,13 @@ std::optional<PicturesApi::FrameId> PicturesApi::begin_next() {
     });
   };
   const Clock::time_point now = Clock::now();
-  auto best = queue_.end();
-  double least = 0;
-  for (auto one = queue_.begin(); one != queue_.end(); ++one) {
-    const double used = shares_.used(one->second, now);
-    // What was asked for while the pictures before are sent comes after them.
-    if (in_work_.contains(one->first) || has_one(one->second)) continue;
-    if (best != queue_.end() && used >= least) continue;
-    best = one;
-    least = used;
-  }
+  // What was asked for while the pictures before are sent comes after them.
+  const auto best =
+      shares_.next(queue_.begin(), queue_.end(), now,
+                   [&](const std::pair<FrameId, std::string>& one) HYADES_REQUIRES(mutex_) {
+                     const bool may = !in_work_.contains(one.first) && !has_one(one.second);
+                     return may ? &one.second : nullptr;
+                   });
   if (best == queue_.end()) return std::nullopt;
   const FrameId id = best->first;
   in_work_[id] = {best->second, now};

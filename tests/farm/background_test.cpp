@@ -136,6 +136,25 @@ TEST(FairShares, WhatWasLongAgoCountsLess) {
   EXPECT_DOUBLE_EQ(shares.used("eve", now + minutes(20)), 3) << "who has used much is remembered";
 }
 
+TEST(FairShares, NextIsTheFirstWhoseOwnerHasUsedLeast) {
+  const FairShares::Time now;
+  FairShares shares;
+  shares.use("eve", 8, now);
+  shares.use("ann", 3, now);
+  shares.use("bob", 3, now);
+  const auto next = [&](const std::vector<std::string>& waiting, const std::string& may_not = {}) {
+    const auto found =
+        shares.next(waiting.begin(), waiting.end(), now,
+                    [&](const std::string& owner) { return owner == may_not ? nullptr : &owner; });
+    return found - waiting.begin();
+  };
+  EXPECT_EQ(next({"eve", "bob", "ann", "eve"}), 1);
+  EXPECT_EQ(next({"eve", "bob", "ann", "eve"}, "bob"), 2);
+  EXPECT_EQ(next({"ann", "new", "other"}), 1) << "who has used nothing";
+  EXPECT_EQ(next({"eve", "eve"}, "eve"), 2) << "none";
+  EXPECT_EQ(next({}), 0);
+}
+
 TEST(RetryQueue, AreTriedOnceMoreInTheEnd) {
   int tried = 0;
   int after = 0;
