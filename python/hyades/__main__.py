@@ -28,6 +28,10 @@ help(hyades) and docs/python.md tell more; docs/job.md describes every key of a 
 
 
 def main() -> int:
+    if len(sys.argv) > 1 and sys.argv[1:] not in (["-h"], ["--help"]):
+        print(f"hyades: unexpected {sys.argv[1]!r}: jobs are rendered by a script of yours, or by "
+              "the program: hyades render job.yaml", file=sys.stderr)
+        return 2
     try:
         path = find_program()
         program = f"{path} ({run_program(['--version'], path).strip()})"

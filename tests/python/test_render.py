@@ -151,6 +151,11 @@ class Help(unittest.TestCase):
         ).stdout
         self.assertRegex(run(), rf"program +{environment.HYADES} \(hyades \d")
         self.assertIn("none: /nowhere is no program", run(HYADES="/nowhere"))
+        wrong = subprocess.run(
+            [sys.executable, "-m", "hyades", "render", "job.yaml"], env=python, capture_output=True, text=True, check=False
+        )
+        self.assertEqual((wrong.returncode, wrong.stdout), (2, ""))
+        self.assertIn("unexpected 'render'", wrong.stderr)
 
 
 if __name__ == "__main__":
