@@ -14,6 +14,7 @@
 #include "core/finish/contact_sheet.h"
 #include "core/image/read_image.h"
 #include "core/image/write_image.h"
+#include "core/job/output_path.h"
 
 namespace hyades::cli {
 namespace {
@@ -41,6 +42,10 @@ std::string name_of(const std::string& path) {
 }
 
 int make_contact_sheet(const ContactSheetOptions& options) {
+  if (core::file_extension(options.output) != ".png") {
+    return contact_sheet_error("--output: expected a file that ends with .png, got '" +
+                               options.output + "'");
+  }
   if (const auto may = options.written.check(options.output); !may) {
     return contact_sheet_error(may.error().message);
   }

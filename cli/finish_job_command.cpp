@@ -70,41 +70,36 @@ int fail(const std::string& message) {
   return kBadInput;
 }
 
-/// What of a film's frame is not as in the job as it stands here; empty: nothing that a person
-/// would see at once.
-std::string other_frame(const core::FilmInfo& info, const core::Job& job) {
+/// An error where a film is not of the job as it stands here: what a person would see at once goes
+/// before all else.
+core::Status check_film(const core::FilmInfo& info, const core::Job& job, const JobFrames& frames) {
+  const std::string frame = fmt::format("frame {}", info.frame);
   if (info.width != job.film.width || info.height != job.film.height) {
-    return fmt::format(
-        "its films are of {} x {} pixels, the job's frames have {} x {}; --size {}x{} takes them "
-        "all "
-        "the same",
-        info.width, info.height, job.film.width, job.film.height, info.width, info.height);
+    return core::Error{fmt::format(
+        "{}: its films are of {} x {} pixels, the job's frames have {} x {}; --size {}x{} "
+        "takes them all the same",
+        frame, info.width, info.height, job.film.width, job.film.height, info.width, info.height)};
   }
   if (info.crop != core::render_window(job.film)) {
-    return "its films are of another part of the frame (--crop) than the job renders";
+    return core::Error{
+        frame + ": its films are of another part of the frame (--crop) than the job renders"};
   }
   if (info.samples != job.sampling.samples) {
-    return fmt::format(
-        "its films are of {} samples per pixel, the job has {}; --samples {} takes them all the "
-        "same",
-        info.samples, job.sampling.samples, info.samples);
+    return core::Error{
+        fmt::format("{}: its films are of {} samples per pixel, the job has {}; --samples {} takes "
+                    "them all the same",
+                    frame, info.samples, job.sampling.samples, info.samples)};
   }
-  return {};
+  return frames.check_picture(info);
 }
 
 /// Joins the films of one frame and writes what is made of it.
 int finish_frame(const Options& options, const std::vector<std::string>& films,
                  const core::Job& job, JobFrames& frames) {
-  const auto whole = join_films(films);
+  const auto whole =
+      join_films(films, [&](const core::FilmInfo& info) { return check_film(info, job, frames); });
   if (!whole) return fail(whole.error().message);
   const int32_t frame = whole->info.frame;
-  const std::string other = other_frame(whole->info, job);
-  if (!other.empty()) {
-    return fail("frame " + std::to_string(frame) + ": " + other);
-  }
-  if (const auto ours = frames.check_picture(whole->info); !ours) {
-    return fail(ours.error().message);
-  }
   if (const std::string missing = what_is_missing(*whole); !missing.empty()) {
     std::fprintf(stderr, "frame %d: %s are there; missing: %s\n", frame, share_held(*whole).c_str(),
                  missing.c_str());

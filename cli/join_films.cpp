@@ -1,6 +1,7 @@
 #include "cli/join_films.h"
 
 #include <cstddef>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -32,13 +33,21 @@ const std::string& opponent(const std::vector<Joined>& earlier, const core::Film
 
 }  // namespace
 
-core::Result<core::FilmFile> join_films(const std::vector<std::string>& paths) {
-  core::Result<core::FilmFile> whole = core::read_film_exr(paths.front());
+core::Result<core::FilmFile> join_films(
+    const std::vector<std::string>& paths,
+    const std::function<core::Status(const core::FilmInfo&)>& fits) {
+  const auto read = [&](const std::string& path) {
+    core::Result<core::FilmFile> film = core::read_film_exr(path);
+    if (!film || !fits) return film;
+    const core::Status may = fits(film->info);
+    return may ? std::move(film) : core::Result<core::FilmFile>(may.error().in(path));
+  };
+  core::Result<core::FilmFile> whole = read(paths.front());
   if (!whole) return whole;
   std::vector<Joined> joined = {{paths.front(), whole->film.coverage()}};
   for (size_t i = 1; i < paths.size(); ++i) {
     const std::string& path = paths[i];
-    const core::Result<core::FilmFile> next = core::read_film_exr(path);
+    const core::Result<core::FilmFile> next = read(path);
     if (!next) return next.error();
     if (next->info.job_name != whole->info.job_name) {
       return core::Error{fmt::format("{} is a film of the job '{}', {} of '{}'", path,

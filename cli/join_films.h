@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -10,7 +11,10 @@ namespace hyades::cli {
 
 /// Reads film EXRs and joins them into one; `paths` is not empty. The error names the film that
 /// cannot be read, or the two that do not fit each other and why.
-core::Result<core::FilmFile> join_films(const std::vector<std::string>& paths);
+/// `fits` says first whether a film is of the picture that is wanted.
+core::Result<core::FilmFile> join_films(
+    const std::vector<std::string>& paths,
+    const std::function<core::Status(const core::FilmInfo&)>& fits = {});
 
 /// "62.5 % of 256 samples per pixel"; only a whole film has 100 %. Where tiles have samples enough
 /// at some noise: "57.3 of at most 256 samples per pixel".

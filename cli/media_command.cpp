@@ -202,7 +202,7 @@ int media_command(int argc, char** argv) {
       "  hyades media make --name wax --color 0.9,0.7,0.4 --radius 4,2,1 --units mm --output "
       "wax.json\n"
       "  hyades media make --name squash --color '#e08030' --depth 0.05\n"
-      "  hyades media swatch espresso cream wax.json --output row.png\n"
+      "  hyades media swatch espresso cream wax.json --units mm --output row.png\n"
       "exit status: 0 done, 1 a file could not be written, 2 the arguments or files are wrong");
   if (const auto status = parse_command_line(app, argc, argv, kBadInput)) return *status;
   const LengthUnit in = unit_called(said.unit);

@@ -1,5 +1,6 @@
 #include "cli/videos.h"
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdio>
 #include <filesystem>
@@ -23,12 +24,33 @@ namespace {
 /// whole are gone.
 core::VideoDesc with_pictures_at_hand(const core::Job& job, const core::VideoDesc& video,
                                       const core::VideoFrames& frames) {
-  core::VideoDesc found = video;
+  core::VideoDesc best = video;
+  size_t least = core::missing_pictures(video, frames).size();
   for (const std::string& pictures : core::alike_pictures(job, video)) {
-    found.pictures = pictures;
-    if (core::missing_pictures(found, frames).empty()) return found;
+    core::VideoDesc other = video;
+    other.pictures = pictures;
+    const size_t missing = core::missing_pictures(other, frames).size();
+    if (missing >= least) continue;
+    best = std::move(other);
+    least = missing;
   }
-  return video;
+  return best;
+}
+
+/// Why pictures that lie there are none of the video's.
+void note_other_pictures(const core::Job& job, const core::VideoDesc& video,
+                         const core::VideoFrames& frames) {
+  const std::vector<std::string> alike = core::alike_pictures(job, video);
+  for (const core::OutputDesc& output : job.outputs) {
+    if (std::find(alike.begin(), alike.end(), output.file) != alike.end()) continue;
+    core::VideoDesc other = video;
+    other.pictures = output.file;
+    if (!core::missing_pictures(other, frames).empty()) continue;
+    std::fprintf(stderr,
+                 "the frames of %s are there, but do not look as the video's pictures shall: in "
+                 "tone_map, exposure, denoise or layers they differ\n",
+                 core::printable(output.file).c_str());
+  }
 }
 
 /// Makes those of the video's own pictures that are not there of the frames' EXRs, where all of
@@ -124,6 +146,7 @@ bool make_videos(const core::Job& job, const std::string& folder,
     }
     if (const auto made = core::make_video(at_hand, frames, patience); !made) {
       print_error(made.error());
+      if (missing.size() == frames.numbers.size()) note_other_pictures(job, video, frames);
       all = false;
     } else if (!quiet) {
       std::fprintf(stderr, "wrote %s/%s\n", folder.c_str(), file.c_str());

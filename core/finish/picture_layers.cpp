@@ -119,15 +119,34 @@ std::vector<std::string> channels_of(std::string_view layer, const Image& pictur
   return {};
 }
 
+namespace {
+
+/// The layers of jobs that are in the picture.
+std::vector<std::string> layers_held(const Image& picture) {
+  std::vector<std::string> held;
+  for (const std::string& layer : layer_names()) {
+    const std::vector<std::string> channels = channels_of(layer, picture);
+    const bool all = std::all_of(channels.begin(), channels.end(), [&](const std::string& channel) {
+      return picture.find_channel(channel) >= 0;
+    });
+    if (all && !channels.empty()) held.push_back(layer);
+  }
+  return held;
+}
+
+}  // namespace
+
 Result<LayerView> view_layer(const Image& picture, const std::string& layer) {
   std::vector<int> sources;
   for (const std::string& channel : channels_of(layer, picture)) {
     sources.push_back(picture.find_channel(channel));
     if (sources.size() == 3) break;
   }
-  if (sources.empty() || std::find(sources.begin(), sources.end(), -1) != sources.end())
-    return Error{
-        fmt::format("there is no layer '{}' in it{}", layer, did_you_mean(layer, layer_names()))};
+  if (sources.empty() || std::find(sources.begin(), sources.end(), -1) != sources.end()) {
+    const std::vector<std::string> held = layers_held(picture);
+    return Error{fmt::format("there is no layer '{}' in it, expected {}{}", layer, join_names(held),
+                             did_you_mean(layer, held))};
+  }
   const size_t stride = picture.channels.size();
   const size_t pixels = picture.data.size() / stride;
   const auto value = [&](size_t pixel) {

@@ -107,6 +107,13 @@ bool MapReader::has(std::string_view key) const {
   return entry != nullptr && entry->value->kind != YamlNode::Kind::null;
 }
 
+std::string MapReader::key_without_space() const {
+  const auto found = std::find_if(map_.map.begin(), map_.map.end(), [](const YamlEntry& entry) {
+    return entry.key.find(':') != std::string::npos && entry.value->kind == YamlNode::Kind::null;
+  });
+  return found != map_.map.end() ? found->key : "";
+}
+
 void MapReader::require(std::string_view key, std::string_view expected) {
   if (listing()) context_.listing->at(type_, {section_, std::string(key)}).required = true;
   if (map_.find(key) != nullptr || listing() || map_.kind != YamlNode::Kind::map) return;

@@ -58,6 +58,8 @@ class MapReader {
   const YamlNode* find(std::string_view key);
   /// Whether `key` is there with a value.
   bool has(std::string_view key) const;
+  /// What is written as a key with its value, the space after the colon forgotten; empty: nothing.
+  std::string key_without_space() const;
   /// Whether a key that was asked for is there without a value, which has been complained about.
   bool has_empty() const { return has_empty_; }
   /// Where the value of `key`, which is there, stands.

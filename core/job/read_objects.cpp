@@ -44,6 +44,14 @@ void read_object_list(MapReader& reader, std::vector<ObjectDesc>& objects);
 
 constexpr std::array<const char*, 4> kKinds = {"shape", "mesh", "instance", "group"};
 
+/// What somebody may have meant who did not say what an object is.
+std::string likely_kind(const MapReader& reader) {
+  if (reader.has("type")) return ", did you mean 'shape' instead of 'type'?";
+  if (reader.has("file")) return ", did you mean 'mesh' instead of 'file'?";
+  const std::string joined = reader.key_without_space();
+  return joined.empty() ? "" : "; in '" + joined + "' a space belongs after the colon";
+}
+
 /// An object is what its one key of kKinds says; "" after a complaint.
 std::string read_shape(MapReader& reader) {
   std::string shape;
@@ -61,9 +69,9 @@ std::string read_shape(MapReader& reader) {
     shape.clear();
     reader.choice("shape", shape, kShapeNames);
   } else if (shape.empty() && !reader.has_empty()) {
-    reader.complain(
-        reader.where(),
-        fmt::format("{} has none of shape, mesh, instance and group, expected one", reader.what()));
+    reader.complain(reader.where(),
+                    fmt::format("{} has none of shape, mesh, instance and group, expected one{}",
+                                reader.what(), likely_kind(reader)));
   }
   return shape;
 }
