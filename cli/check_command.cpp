@@ -223,12 +223,20 @@ core::Status print_summary(const CheckOptions& options, const core::Job& job,
   std::printf("%s: good\n", options.path.c_str());
   print_contents(job, **scene, samples);
   std::optional<double> seconds;
+  bool dark = false;
   if (!options.no_probe) {
-    seconds =
-        measure_sample_cost(renderer, window, job.frames.first, 1, kProbeSeconds).core_seconds;
+    const SampleCost cost =
+        measure_sample_cost(renderer, window, job.frames.first, 1, kProbeSeconds);
+    seconds = cost.core_seconds;
+    dark = !cost.lit;
   }
   print_units(job, layers.splats, seconds);
   print_memory(job, **scene);
+  if (dark && (*scene)->warnings.empty()) {
+    std::printf(
+        "  warning    no light was found in the pixels that were tried: does any reach what the "
+        "camera sees?\n");
+  }
   if (seconds) {
     const double hours = *seconds * samples / 3600.0;
     const bool adaptive = core::noise_threshold(job).adaptive();

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cmath>
 #include <cstddef>
 #include <filesystem>
 #include <memory>
@@ -91,7 +92,8 @@ core::Status JobFrames::check_film_names() const {
   return {};
 }
 
-core::Status JobFrames::check_outputs(const std::vector<int32_t>& frames, bool overwrite) const {
+/// Everything that a run of `frames` writes.
+std::vector<std::string> JobFrames::all_paths(const std::vector<int32_t>& frames) const {
   std::vector<std::string> paths;
   for (const int32_t frame : frames) {
     for (std::string& path : output_paths(frame)) paths.push_back(std::move(path));
@@ -99,11 +101,21 @@ core::Status JobFrames::check_outputs(const std::vector<int32_t>& frames, bool o
   if (!options_.only_films) {
     for (const std::filesystem::path& video : video_paths()) paths.push_back(video.string());
   }
+  return paths;
+}
+
+core::Status JobFrames::check_outputs(const std::vector<int32_t>& frames, bool overwrite) const {
+  const std::vector<std::string> paths = all_paths(frames);
   core::FolderLinks links(options_.folder);
   for (const std::string& path : paths) {
     if (auto stays = links.check(path); !stays) return stays;
   }
   return overwrite ? core::Status{} : check_own_files(paths, loaded_.job.name);
+}
+
+core::Status JobFrames::check_not_lessened(const std::vector<int32_t>& frames) const {
+  return cli::check_not_lessened(all_paths(frames), loaded_.asked,
+                                 {loaded_.job.sampling.samples, options_.window.area()});
 }
 
 std::string JobFrames::below_folder(const std::string& path) const {
@@ -161,12 +173,24 @@ core::Result<std::shared_ptr<const coordinator::FrameWork>> JobFrames::prepare(i
       std::make_shared<Work>(*this, frame, *scene));
 }
 
+void JobFrames::note_darkness(int32_t frame, const core::Film& film) {
+  // Of white: in eight bits six of 255.
+  constexpr double kHardlyAnything = 0.002;
+  const bool black = core::is_black(film);
+  if (!black) {
+    float exposure = 0.0F;
+    for (const core::OutputDesc& output : loaded_.job.outputs) {
+      exposure = std::max(exposure, output.exposure);
+    }
+    if (!core::is_dimmer_than(film, kHardlyAnything * std::exp2(-double{exposure}))) return;
+  }
+  const core::MutexLock lock(totals_mutex_);
+  (black ? totals_.black : totals_.dim).push_back(frame);
+}
+
 core::Status JobFrames::finish(int32_t frame, const core::Film& film) {
   const core::FilmInfo info = film_info(frame);
-  if (core::is_black(film)) {
-    const core::MutexLock lock(totals_mutex_);
-    totals_.black.push_back(frame);
-  }
+  note_darkness(frame, film);
   if (auto written = write_pictures(info, film); !written) return written;
   if (!options_.write_films) return {};
   return core::write_film_exr(film_path(frame), {info, film});

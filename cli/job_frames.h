@@ -28,6 +28,7 @@ struct RunTotals {
   };
   std::vector<Bad> bad;        ///< the first few
   std::vector<int32_t> black;  ///< frames that no light has reached
+  std::vector<int32_t> dim;    ///< others in whose pictures hardly anything can be seen
 };
 
 /// The frames of a job for LocalRun: builds scenes, renders units, writes outputs.
@@ -52,6 +53,10 @@ class JobFrames : public coordinator::FrameSource, public coordinator::FrameSink
   /// An error where a link would lead outputs of `frames`, or videos of them, out of their folder;
   /// and, but for `overwrite`, where some are there that another job has made, or another program.
   core::Status check_outputs(const std::vector<int32_t>& frames, bool overwrite) const;
+
+  /// An error where outputs of `frames` are there with all the samples and pixels that the job asks
+  /// for, and would be made with fewer.
+  core::Status check_not_lessened(const std::vector<int32_t>& frames) const;
 
   /// Opens the colour configuration, which write_outputs() needs.
   core::Status load_display();
@@ -98,6 +103,7 @@ class JobFrames : public coordinator::FrameSource, public coordinator::FrameSink
 
  private:
   class Work;
+  std::vector<std::string> all_paths(const std::vector<int32_t>& frames) const;
   core::Status write_pictures(const core::FilmInfo& info, const core::Film& film);
   core::FilmInfo film_info(int32_t frame) const;
   /// `path` as seen from the outputs' folder: it begins with ".." where it lies elsewhere.
@@ -105,6 +111,7 @@ class JobFrames : public coordinator::FrameSource, public coordinator::FrameSink
   std::string film_path(int32_t frame) const;
   std::vector<std::filesystem::path> video_paths() const;
   void note(int32_t frame, const core::RenderCounters& counters);
+  void note_darkness(int32_t frame, const core::Film& film);
 
   LoadedJob& loaded_;
   Options options_;

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "cli/blend_job.h"
+#include "cli/own_files.h"
 #include "cli/scene_options.h"
 #include "core/base/assets.h"
 #include "core/base/result.h"
@@ -18,6 +19,7 @@ namespace hyades::cli {
 struct LoadedJob {
   std::unique_ptr<BlendJob> blend;  ///< where the job was made of a .blend: has its files
   core::Job job;
+  PictureWork asked;  ///< of a frame, before the command line has changed anything
   std::unique_ptr<core::JobFiles> files;
   std::unique_ptr<core::RecordingResolver> assets;  ///< over `files`; knows what was opened
 };

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <charconv>
 #include <cstddef>
 #include <filesystem>
 #include <fstream>
@@ -86,6 +87,48 @@ bool names_job(std::string_view header, const std::string& job) {
   return false;
 }
 
+/// What the comment of a JPEG, a TIFF or a video says under `name`.
+std::string told_in_comment(const std::string& path, const std::string& name) {
+  std::error_code none;
+  std::ifstream file(path, std::ios::binary);
+  const auto size = static_cast<std::streamoff>(fs::file_size(path, none));
+  if (!file || none) return "";
+  const std::streamoff bytes = std::min(size, kHeader);
+  const std::string line = name + ": ";
+  for (const std::string& header : {part_of(file, 0, bytes), part_of(file, size - bytes, bytes)}) {
+    const size_t at = header.find(line);
+    if (at == std::string::npos) continue;
+    const size_t begin = at + line.size();
+    return header.substr(begin, header.find_first_not_of("0123456789", begin) - begin);
+  }
+  return "";
+}
+
+/// What went into the picture or film at `path`; noughts where it does not say.
+PictureWork told_work(const std::string& path) {
+  const bool exr = path.ends_with(".exr");
+  if (exr) {
+    if (const auto film = core::read_film_info(path)) return {film->samples, film->crop.area()};
+  }
+  std::string samples;
+  std::string pixels;
+  if (exr || path.ends_with(".png")) {
+    const auto texts = exr ? core::read_exr_texts(path) : core::read_png_texts(path);
+    if (!texts) return {};
+    for (const auto& [name, value] : *texts) {
+      if (name == "hyades.samples") samples = value;
+      if (name == "hyades.pixels") pixels = value;
+    }
+  } else {
+    samples = told_in_comment(path, "hyades.samples");
+    pixels = told_in_comment(path, "hyades.pixels");
+  }
+  PictureWork work;
+  std::from_chars(samples.data(), samples.data() + samples.size(), work.samples);
+  std::from_chars(pixels.data(), pixels.data() + pixels.size(), work.pixels);
+  return work;
+}
+
 }  // namespace
 
 bool is_of_job(const std::string& path, const std::string& job) {
@@ -110,9 +153,30 @@ core::Status check_own_files(const std::vector<std::string>& paths, const std::s
   }
   if (first.empty()) return {};
   return core::Error{fmt::format(
-      "{}{} there, and no file of the job '{}': --overwrite replaces it, --output DIR writes "
+      "{}{} there, and no {} of the job '{}': --overwrite replaces {}, --output DIR writes "
       "elsewhere",
-      first, others > 1 ? " (and " + core::counted(others - 1, "other") + ") are" : " is", job)};
+      first, others > 1 ? " (and " + core::counted(others - 1, "other") + ") are" : " is",
+      others > 1 ? "files" : "file", job, others > 1 ? "them" : "it")};
+}
+
+core::Status check_not_lessened(const std::vector<std::string>& paths, const PictureWork& whole,
+                                const PictureWork& now) {
+  for (const std::string& path : paths) {
+    std::error_code none;
+    if (!fs::is_regular_file(path, none)) continue;
+    const PictureWork there = told_work(path);
+    if (there.samples < whole.samples || there.pixels < whole.pixels) continue;
+    if (there.samples <= now.samples && there.pixels <= now.pixels) continue;
+    const auto words = [](const PictureWork& work) {
+      return fmt::format("{} in each of {}", core::counted(work.samples, "sample"),
+                         core::counted(static_cast<uint64_t>(work.pixels), "pixel"));
+    };
+    return core::Error{fmt::format(
+        "{} has more in it than this run makes: {}, not {}. --overwrite replaces it, --output DIR "
+        "writes elsewhere",
+        path, words(there), words(now))};
+  }
+  return {};
 }
 
 }  // namespace hyades::cli

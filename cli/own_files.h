@@ -16,4 +16,16 @@ bool is_of_job(const std::string& path, const std::string& job);
 /// `--overwrite` would replace them.
 core::Status check_own_files(const std::vector<std::string>& paths, const std::string& job);
 
+/// How much has gone into a picture.
+struct PictureWork {
+  uint32_t samples = 0;  ///< per pixel
+  int64_t pixels = 0;
+};
+
+/// An error where some of the files are pictures or films with all the samples and pixels that the
+/// job asks for, `whole`, and would be made anew with fewer, `now`: the first is named, as
+/// `--overwrite` replaces it. Those that do not say how they were made count as less.
+core::Status check_not_lessened(const std::vector<std::string>& paths, const PictureWork& whole,
+                                const PictureWork& now);
+
 }  // namespace hyades::cli

@@ -70,15 +70,14 @@ void print_bad_samples(const RunTotals& totals, const std::string& path) {
   }
 }
 
-/// A picture without any light is seldom meant. Parts of one may be dark.
-void warn_of_black(const RenderOptions& options, std::vector<int32_t> frames) {
+/// A picture without any light, or nearly so, is seldom meant. Parts of one may be dark.
+void warn_of_frames(const RenderOptions& options, std::vector<int32_t> frames, const char* what) {
   if (frames.empty() || options.is_part() || !options.crop.empty()) return;
   std::sort(frames.begin(), frames.end());
   const std::string which = frames.size() == 1 ? fmt::format("frame {} is", frames.front())
                                                : fmt::format("{} frames, {} the first, are",
                                                              frames.size(), frames.front());
-  std::fprintf(stderr, "warning: %s black all over: no light reaches what the camera sees\n",
-               which.c_str());
+  std::fprintf(stderr, "warning: %s %s\n", which.c_str(), what);
 }
 
 /// Those of `numbers` whose outputs are there.
@@ -105,21 +104,39 @@ void note_kept(const RenderOptions& options, const FilmRoom& room) {
                options.folder.c_str(), core::format_bytes(room.film).c_str());
 }
 
-/// Before it is waited for: a disk that may have no room for what a run keeps of a frame.
-void warn_of_full_disk(const RenderOptions& options, const FilmRoom& room) {
-  if (!options.keep_work) return;
+/// What the pictures of `frames` frames may take on the disk, in bytes, before they are packed.
+uint64_t picture_bytes(const core::Job& job, const FilmRoom& room, size_t frames) {
+  uint64_t each = 0;  // of a pixel
+  for (const core::OutputDesc& output : job.outputs) {
+    each += core::file_extension(output.file) == ".exr" ? 4 * room.channels : 4;
+  }
+  return each * static_cast<uint64_t>(room.window.area()) * frames;
+}
+
+/// Before it is waited for, or all was in vain: a disk that may have no room for what a run keeps
+/// of a frame, or for what it writes.
+void warn_of_full_disk(const RenderOptions& options, const FilmRoom& room, const core::Job& job,
+                       size_t frames) {
   std::error_code failed;
   std::filesystem::path there = std::filesystem::absolute(options.folder, failed);
   while (there.has_relative_path() && !std::filesystem::exists(there, failed)) {
     there = there.parent_path();
   }
   const auto space = std::filesystem::space(there, failed);
-  if (failed || space.available >= room.film) return;
-  std::fprintf(stderr,
-               "warning: the disk of %s has %s left, and a frame's film may take up to %s there "
-               "until the frame is written; --no-resume keeps none\n",
-               options.folder.c_str(), core::format_bytes(space.available).c_str(),
-               core::format_bytes(room.film).c_str());
+  if (failed) return;
+  const std::string left =
+      fmt::format("warning: the disk of {} has {} left, and ", core::printable(options.folder),
+                  core::format_bytes(space.available));
+  const uint64_t pictures = options.is_part() ? 0 : picture_bytes(job, room, frames);
+  if (options.keep_work && space.available < room.film) {
+    std::fprintf(stderr,
+                 "%sa frame's film may take up to %s there until the frame is written; "
+                 "--no-resume keeps none\n",
+                 left.c_str(), core::format_bytes(room.film).c_str());
+  } else if (space.available < pictures) {
+    std::fprintf(stderr, "%swhat is written may take up to %s\n", left.c_str(),
+                 core::format_bytes(pictures).c_str());
+  }
 }
 
 int report(const RenderOptions& options, const FilmRoom& room, const JobFrames& frames,
@@ -129,7 +146,9 @@ int report(const RenderOptions& options, const FilmRoom& room, const JobFrames& 
   const coordinator::Progress progress = run.progress();
   const RunTotals totals = frames.totals();
   print_bad_samples(totals, options.path);
-  warn_of_black(options, totals.black);
+  warn_of_frames(options, totals.black, "black all over: no light reaches what the camera sees");
+  warn_of_frames(options, totals.dim,
+                 "nearly black: brighter lights, or the 'exposure' of outputs, would show more");
   for (const coordinator::FrameFailure& failure : outcome.failures) {
     print_error(core::Error{fmt::format("frame {} failed: {}", failure.frame, failure.reason)});
   }
@@ -307,8 +326,8 @@ int finish_run(const RenderOptions& options, const core::Job& job,
   } else if (videos && !options.quiet) {
     note_no_videos(job, options.folder, options.path);
   }
-  // After --frames the log may hold work on other frames.
-  if (!all_frames && !options.is_part()) return 0;
+  // After --frames the log may hold work on other frames, but for those of a part.
+  if (!all_frames && !options.is_part() && options.crop.empty()) return 0;
   remove_kept(options, kept);
   if (!videos) return 0;
   // Not earlier: a resumed run would have missed them.
@@ -378,6 +397,10 @@ int run_frames(const RenderOptions& options, const core::Job& job, const FilmRoo
   // The log is ours now, so nobody else writes these files.
   frames.remove_leftovers(numbers, begin);
   note.write();
+  // Of what it writes a later run of the whole must not think that it is finished.
+  if (!options.crop.empty()) {
+    std::filesystem::remove(options.folder + "/.hyades/" + job.name + ".outputs", failed);
+  }
   limit.write();
   for (const std::string& problem : run.log_problems()) {
     std::fprintf(stderr, "%s\n", problem.c_str());
@@ -431,11 +454,14 @@ int render_command(int argc, char** argv) {
   if (const auto may = frames.check_outputs(*numbers, options.overwrite); !may) {
     return refuse(may.error());
   }
-  warn_of_full_disk(options, room);
+  warn_of_full_disk(options, room, job, numbers->size());
   TimeLimit limit(options, kept + ".time", began);
   if (options.time > 0) {
     const auto chosen = keep_to_time(options, limit, frames, *numbers, loaded->job);
     if (!chosen) return refuse(chosen.error());
+  }
+  if (options.is_trial() && !options.overwrite) {
+    if (const auto may = frames.check_not_lessened(*numbers); !may) return refuse(may.error());
   }
   return run_frames(options, job, room, *numbers, frames, note, limit, kept);
 }

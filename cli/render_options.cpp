@@ -157,7 +157,8 @@ void declare_results(CLI::App& app, RenderOptions& options) {
                "keep nothing for a run that is interrupted: where the disk has no room for films")
       ->excludes(resume);
   app.add_flag("--overwrite", options.overwrite,
-               "replace files that are there, whoever made them (default: those of this job)");
+               "replace files that are there, whoever made them (default: those of this job, "
+               "but with --samples, --time, --size, --scale and --crop no whole ones by less)");
   app.add_flag("-q,--quiet", options.quiet, "show no progress");
   app.add_flag("--json", options.json,
                "for programs: print progress and what is written, a JSON object a line");
@@ -216,6 +217,7 @@ std::optional<LoadedJob> load_for_render(const RenderOptions& options) {
   auto loaded = load_job(options.path, scene);
   if (!loaded) return std::nullopt;
   core::Job& job = loaded->job;
+  loaded->asked = {job.sampling.samples, core::render_window(job.film).area()};
   resize_film(options.size, job.film);
   if (options.preview > 0) make_preview(job, options.preview);
   if (options.samples.of > 0) job.sampling.samples = options.samples.of;
@@ -283,8 +285,11 @@ std::string film_file_of(const RenderOptions& options, const core::Job& job) {
 std::string kept_name(const RenderOptions& options, const core::Job& job) {
   // It writes other files, and must not cost what is kept of the job's own.
   if (options.preview > 0) return job.name + ".preview";
-  if (!options.is_part()) return job.name;
-  return job.name + ".frames-" + (options.frames.empty() ? "all" : options.frames) +
+  // Nor must a part of the picture that somebody looks at.
+  if (!options.is_part() && options.crop.empty()) return job.name;
+  const std::string crop =
+      options.crop.empty() ? "" : fmt::format(".crop-{}", fmt::join(options.crop, "-"));
+  return job.name + ".frames-" + (options.frames.empty() ? "all" : options.frames) + crop +
          part_text(options);
 }
 

@@ -7,6 +7,7 @@
 
 #include "core/base/hash.h"
 #include "core/base/machine.h"
+#include "core/film/black.h"
 
 namespace hyades::cli {
 
@@ -20,6 +21,7 @@ SampleCost measure_sample_cost(const core::FrameRenderer& renderer, const core::
   };
   std::atomic<uint64_t> patches{0}, samples{0};
   std::atomic<double> core_seconds{0};
+  std::atomic<bool> lit{false};
   const auto measure = [&] {
     const double cpu_begin = core::thread_seconds();
     do {
@@ -28,7 +30,9 @@ SampleCost measure_sample_cost(const core::FrameRenderer& renderer, const core::
       const int y =
           window.y0 + static_cast<int>((h >> 32) % static_cast<uint64_t>(window.height()));
       const core::PixelRect patch = intersection(window, {x, y, x + kPatch, y + kPatch});
-      samples += renderer.render({frame, patch, {0, 1}}).counters.samples;
+      const core::RenderedUnit unit = renderer.render({frame, patch, {0, 1}});
+      samples += unit.counters.samples;
+      if (!core::is_black(unit.film)) lit = true;
     } while (so_far() < seconds);
     core_seconds += core::thread_seconds() - cpu_begin;
   };
@@ -37,7 +41,7 @@ SampleCost measure_sample_cost(const core::FrameRenderer& renderer, const core::
   measure();
   for (std::thread& other : others) other.join();
   const auto all = static_cast<double>(samples);
-  return {core_seconds / all, so_far() / all};
+  return {core_seconds / all, so_far() / all, lit};
 }
 
 }  // namespace hyades::cli

@@ -11,6 +11,7 @@ namespace hyades::cli {
 struct SampleCost {
   double core_seconds = 0;  ///< of one core, whatever else the machine does
   double seconds = 0;       ///< by the clock, where all `threads` render
+  bool lit = false;         ///< whether light has reached one of the pixels
 };
 
 /// Measures it for at least `seconds` with `threads` threads, on small patches that are scattered

@@ -98,6 +98,7 @@ Result<std::vector<std::string>> write_outputs(std::span<const OutputDesc> outpu
       {"hyades.job", info.job_name},
       {"hyades.frame", std::to_string(info.frame)},
       {"hyades.samples", std::to_string(info.samples)},
+      {"hyades.pixels", std::to_string(film.window().area())},
       {"hyades.renderKey", info.render_key},
       {"hyades.class", info.worker_class},
       {"hyades.build", info.build},

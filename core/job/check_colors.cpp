@@ -86,7 +86,41 @@ bool hands_through(const TextureDesc& texture) {
       texture.kind);
 }
 
+bool is_temperature(const Rgb& color) {
+  return color.r == color.g && color.g == color.b && color.r >= 1000.0F && color.r <= 20000.0F &&
+         std::fmod(color.r, 50.0F) == 0.0F;
+}
+
+void doubt(const std::string& whose, const Animated<Rgb>& color, std::vector<std::string>& doubts) {
+  if (!color.is_constant()) return;
+  const Rgb& c = color.constant;
+  const bool grey = c.r == c.g && c.g == c.b;
+  if (is_temperature(c)) {
+    doubts.push_back(fmt::format(
+        "{} has the colour {}, which is that many times white: expected '{}K' if it is the "
+        "temperature of a black body",
+        whose, c.r, c.r));
+  } else if (!grey && brightest(c) >= 100.0F && !as_bytes_hint(c).empty()) {
+    doubts.push_back(fmt::format("{} has the colour {}, which makes it up to {} times as bright{}",
+                                 whose, in_words(c), brightest(c), as_bytes_hint(c)));
+  }
+}
+
 }  // namespace
+
+std::vector<std::string> doubtful_light_colors(const Job& job) {
+  std::vector<std::string> doubts;
+  for (const LightDesc& light : job.lights) {
+    std::visit([&](const auto& kind) { doubt("light '" + light.name + "'", kind.color, doubts); },
+               light.kind);
+  }
+  for (const ObjectDesc& object : job.objects) {
+    if (!object.emit || !object.emit->color.texture.empty()) continue;
+    doubt("the light of object '" + object.name + "'", object.emit->color.value, doubts);
+  }
+  if (job.environment) doubt("the environment", job.environment->color, doubts);
+  return doubts;
+}
 
 void check_texture_colors(ReadContext& context) {
   std::map<std::string, const TextureDesc*> all;

@@ -1,5 +1,9 @@
 #pragma once
 
+#include <string>
+#include <vector>
+
+#include "core/job/job.h"
 #include "core/job/read_context.h"
 
 namespace hyades::core {
@@ -8,5 +12,9 @@ namespace hyades::core {
 /// shares of light: colours of 0 to 255, mostly. Arithmetic in between may have its reasons; what
 /// is made by it is not looked at.
 void check_texture_colors(ReadContext& context);
+
+/// What is likely no radiance among the colours of what gives light, as these may be as bright as
+/// they like: numbers of bytes, and temperatures without their K. A line each.
+std::vector<std::string> doubtful_light_colors(const Job& job);
 
 }  // namespace hyades::core

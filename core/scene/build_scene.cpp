@@ -13,6 +13,7 @@
 
 #include "core/film/id_counts.h"
 #include "core/geometry/placement_check.h"
+#include "core/job/check_colors.h"
 #include "core/job/check_frame.h"
 #include "core/job/layers.h"
 #include "core/job/mesh_files.h"
@@ -53,6 +54,9 @@ class SceneBuilder {
     if (auto done = add_lights(); !done) return done.error();
     if (auto done = add_environment(); !done) return done.error();
     warn_of_darkness();
+    for (std::string& doubt : doubtful_light_colors(job_)) {
+      scene_->warnings.push_back(std::move(doubt));
+    }
     if (auto done = add_camera(); !done) return done.error();
     if (auto done = add_motion(); !done) return done.error();
     add_media_around_camera();

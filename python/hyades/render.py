@@ -70,13 +70,14 @@ def render(
     preview: int | None = None,
     resume: bool = False,
     film: bool = False,
+    overwrite: bool = False,
     on_progress: Callable[[Progress], None] | None = None,
     program: PathLike | None = None,
 ) -> Rendering:
     """Renders `job` (a Job, or the path of a job or scene) into the folder `output`.
 
-    frames, samples, threads, crop (x0, y0, x1, y1), preview (pixels across), resume and film are
-    the options of `hyades render`. A Job is written into the folder too, as NAME.yaml. `on_progress`
+    frames, samples, threads, crop (x0, y0, x1, y1), preview (pixels across), resume, film and
+    overwrite are the options of `hyades render`. A Job is written into the folder too, as NAME.yaml. `on_progress`
     is called five times a second at most. JobError: mistakes in the job; ProgramError: frames failed
     or the program is not there. Ctrl-C ends the run; `resume` goes on with it.
     """
@@ -84,6 +85,7 @@ def render(
     options += _options(frames, samples, threads, crop)
     options += [f"--preview={preview}"] * (preview is not None)
     options += ["--resume"] * resume + ["--film"] * film
+    options += ["--overwrite"] * overwrite
     files: dict[int, list[Path]] = {}
     videos: list[Path] = []
 
