@@ -22,6 +22,7 @@
 #include "coordinator/backup/copy_database.h"
 #include "coordinator/backup/manifest.h"
 #include "coordinator/backup/read_file.h"
+#include "coordinator/film_store/log_names.h"
 #include "core/base/atomic_file.h"
 #include "core/base/descriptor.h"
 #include "core/base/hash.h"
@@ -225,7 +226,8 @@ class Writer {
   std::vector<std::string> log_files(const std::string& folder) const {
     auto files = files_below(folder);
     std::erase_if(files, [](const std::string& file) {
-      return file.ends_with(".tmp") || file.ends_with(".lock") || file.ends_with(".aside");
+      return file.ends_with(kUnfinishedSuffix) || file.ends_with(kLockName) ||
+             file.ends_with(kAsideSuffix);
     });
     return files;
   }

@@ -388,6 +388,10 @@ std::vector<core::Unit> units_of(int32_t frame, const core::Film& film,
   return units;
 }
 
+bool may_be_too_large(const core::Film& film) {
+  return film.layout().layers.splats && film.memory() > FilmLog::kMaxRecordBytes;
+}
+
 core::Status write_film(int32_t frame, const FrameKey& key, const core::Film& film,
                         const CutRecord& cut, const std::string& worker_class,
                         const FilmLog::Sink& sink) {

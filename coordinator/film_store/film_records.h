@@ -96,6 +96,10 @@ core::Result<LogContents> read_log(FilmLog& log, const LogFilter& filter);
 std::vector<core::Unit> units_of(int32_t frame, const core::Film& film,
                                  const core::PixelRect& region, int32_t tile_size);
 
+/// Whether a record of all of the film may become longer than a log takes: one with splats is not
+/// cut.
+bool may_be_too_large(const core::Film& film);
+
 /// Says what a film holds in records, one for each tile. Splats belong to no tile: with them, and
 /// what they belong to, it is one record, so that all of it is lost or nothing. `worker_class`: of
 /// those who delivered it; empty: nobody did.

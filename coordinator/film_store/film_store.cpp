@@ -26,23 +26,18 @@ constexpr Duration kCompactAgain = std::chrono::seconds(5);
 /// memory; more would have to be rendered again.
 constexpr size_t kUnfinishedFilms = 2;
 
-/// How the files of films that are set aside end.
-constexpr const char* kAside = ".aside";
-
 /// Whose log it is. What its films are of stands beside each of them.
 constexpr const char* kLogKey = "hyades render, films by frame";
 
 TimePoint now() { return std::chrono::steady_clock::now(); }
 
-/// Whether the film's record may become longer than a log takes: one with splats is in one.
-bool too_large(const core::Film& film) {
-  return film.layout().layers.splats && film.memory() > FilmLog::kMaxRecordBytes;
-}
-
 }  // namespace
 
 FilmStore::FilmStore(FilmSet films, FilmStoreOptions options, Listener& listener)
-    : set_(std::move(films)), options_(std::move(options)), listener_(listener) {}
+    : set_(std::move(films)),
+      options_(std::move(options)),
+      listener_(listener),
+      aside_(files(), options_.folder, set_.region) {}
 
 FilmStore::~FilmStore() {
   drain();
@@ -57,7 +52,7 @@ FilmStore::~FilmStore() {
     if (item.call) item.call();
   }
   // The log has all of them.
-  while (!aside_.empty()) remove_aside(aside_.begin()->first);
+  aside_.remove_all();
   log_.reset();
 }
 
@@ -96,13 +91,7 @@ core::Status FilmStore::open_log(bool erase) {
   if (!log) return log.error();
   log_ = std::move(*log);
   // All that an earlier run had set aside is in the log.
-  const auto names = files.list(options_.folder);
-  if (!names) return names.error();
-  for (const std::string& name : *names) {
-    if (!name.ends_with(kAside)) continue;
-    if (core::Status gone = files.remove(options_.folder + "/" + name); !gone) return gone;
-  }
-  return {};
+  return aside_.remove_left();
 }
 
 LogFiles& FilmStore::files() const {
@@ -371,7 +360,7 @@ void FilmStore::apply(const Record& record) {
                  },
                  [](const FrameFailedRecord&) {},
                  [&](const FrameRestartedRecord& restarted) {
-                   remove_aside(restarted.frame);
+                   aside_.remove(restarted.frame);
                    films_.erase(restarted.frame);
                    classes_.erase(restarted.frame);
                    finished_.erase(restarted.frame);
@@ -426,61 +415,19 @@ std::shared_ptr<const core::Film> FilmStore::film(int32_t frame) const {
   return it == films_.end() ? nullptr : it->second;
 }
 
-std::string FilmStore::path_aside(int32_t frame) const {
-  return fmt::format("{}/{}{}", options_.folder, frame, kAside);
-}
-
 core::Status FilmStore::set_aside(int32_t frame) {
   const auto it = films_.find(frame);
   if (it == films_.end()) return {};
   if (!logs() || tile_size_ < 1) return core::Error{"films are kept in memory alone"};
-  auto file = files().create(path_aside(frame));
-  if (!file) return file.error();
-  // It is not for another run, which has the log.
-  const auto put = [&](std::span<const std::byte> bytes) -> core::Status {
-    const uint64_t size = bytes.size();
-    if (core::Status done = (*file)->write(std::as_bytes(std::span(&size, 1))); !done) return done;
-    return (*file)->write(bytes);
-  };
-  const core::Status written = write_film(frame, key_of(frame), *it->second,
-                                          {set_.region, tile_size_, set_.samples}, {}, put);
-  file->reset();
-  if (!written) {
-    (void)files().remove(path_aside(frame));
-    return written;
-  }
-  aside_[frame] = too_large(*it->second);
+  if (core::Status put = aside_.put(frame, *it->second, tile_size_); !put) return put;
   films_.erase(it);
   return {};
 }
 
-core::Result<std::shared_ptr<core::Film>> FilmStore::read_aside(int32_t frame) const {
-  const auto file = files().open(path_aside(frame));
-  if (!file) return file.error();
-  std::shared_ptr<core::Film> whole;
-  for (uint64_t at = 0; at < (*file)->size();) {
-    uint64_t size = 0;
-    core::Status read = (*file)->read(at, std::as_writable_bytes(std::span(&size, 1)));
-    if (read && size > (*file)->size() - at) read = core::Error{"it is cut off"};
-    if (!read) return read.error().in(path_aside(frame));
-    std::vector<std::byte> record(size);
-    read = (*file)->read(at + sizeof size, record);
-    if (!read) return read.error().in(path_aside(frame));
-    const auto part = decode_unit(record);
-    if (!part) return part.error().in(path_aside(frame));
-    if (!whole) {
-      whole = std::make_shared<core::Film>(part->layout(), set_.region, part->splats().region());
-    }
-    if (core::Status merged = whole->merge(*part); !merged) return merged.error();
-    at += sizeof size + size;
-  }
-  return whole;
-}
-
 bool FilmStore::fetch(int32_t frame) {
   if (!is_aside(frame)) return true;
-  auto film = read_aside(frame);
-  remove_aside(frame);
+  auto film = aside_.read(frame);
+  aside_.remove(frame);
   if (!film) {
     // What comes would else be taken for all of it.
     listener_.outgrown(frame, "its film is lost: " + film.error().message);
@@ -490,12 +437,8 @@ bool FilmStore::fetch(int32_t frame) {
   return true;
 }
 
-void FilmStore::remove_aside(int32_t frame) {
-  if (aside_.erase(frame) > 0) (void)files().remove(path_aside(frame));
-}
-
 void FilmStore::forget(int32_t frame, FrameEnd end) {
-  remove_aside(frame);
+  aside_.remove(frame);
   if (const auto bytes = frame_bytes_.extract(frame)) useless_bytes_ += bytes.mapped();
   const auto it = films_.find(frame);
   if (it == films_.end()) return;
@@ -518,10 +461,10 @@ void FilmStore::compact_if_worthwhile(bool room_wanted) {
   }
   for (const auto* films : {&films_, &unfinished_}) {
     for (const auto& [frame, film] : *films) {
-      if (too_large(*film)) return;
+      if (may_be_too_large(*film)) return;
     }
   }
-  for (const auto& [frame, large] : aside_) {
+  for (const auto& [frame, large] : aside_.frames()) {
     if (large) return;
   }
   const uint64_t snapshot_before = std::exchange(snapshot_bytes_, 0);
@@ -559,9 +502,9 @@ core::Status FilmStore::write_snapshot(const FilmLog::Sink& sink) {
   for (const auto& [frame, film] : films) {
     if (status) status = put_film(frame, *film, put);
   }
-  for (const auto& [frame, large] : aside_) {
+  for (const auto& [frame, large] : aside_.frames()) {
     if (!status) break;
-    const auto film = read_aside(frame);
+    const auto film = aside_.read(frame);
     if (!film) return film.error();
     if (*film) status = put_film(frame, **film, put);
   }

@@ -14,6 +14,7 @@
 
 #include "coordinator/film_store/film_log.h"
 #include "coordinator/film_store/film_records.h"
+#include "coordinator/film_store/films_aside.h"
 #include "coordinator/film_store/log_files.h"
 #include "coordinator/scheduler/actions.h"
 #include "core/base/mutex.h"
@@ -134,7 +135,9 @@ class FilmStore {
   /// Whether the frame's film is set aside.
   bool is_aside(int32_t frame) const { return aside_.contains(frame); }
   /// A copy of the frame's film, which is set aside and stays so; null where it holds nothing.
-  core::Result<std::shared_ptr<core::Film>> read_aside(int32_t frame) const;
+  core::Result<std::shared_ptr<core::Film>> read_aside(int32_t frame) const {
+    return aside_.read(frame);
+  }
   /// Has the frame's film in memory, if there is one. Whether that could be done.
   bool fetch(int32_t frame);
   /// The frame is over. A film whose outputs could not be written stays in the log for another run.
@@ -167,8 +170,6 @@ class FilmStore {
   core::Status write_snapshot(const FilmLog::Sink& sink);
   void release(uint64_t memory);
   LogFiles& files() const;
-  std::string path_aside(int32_t frame) const;
-  void remove_aside(int32_t frame);
   core::Status put_film(int32_t frame, const core::Film& film, const FilmLog::Sink& sink);
 
   const FilmSet set_;
@@ -192,8 +193,7 @@ class FilmStore {
   std::deque<Item> appended_;  ///< not durable yet, or not settled
   Item* settling_ = nullptr;
   std::map<int32_t, std::shared_ptr<core::Film>> films_;
-  std::map<int32_t, bool> aside_;  ///< frames whose films are set aside; whether they are too large
-                                   ///< for a record of the log
+  FilmsAside aside_;  ///< films that are set aside, and so not in films_
   std::map<int32_t, std::string> classes_;  ///< of frames, where workers delivered their films
   std::map<int32_t, FinishedRecord> finished_;
   /// Complete films of frames whose outputs could not be written.

@@ -1,0 +1,47 @@
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <string>
+#include <utility>
+
+#include "coordinator/film_store/film_records.h"
+#include "coordinator/film_store/log_files.h"
+#include "core/base/result.h"
+#include "core/film/film.h"
+
+namespace hyades::coordinator {
+
+/// Films of frames that are not in memory: each in a file of its own beside the log. They are for
+/// this run alone, and never synced: the log holds their units as well.
+class FilmsAside {
+ public:
+  /// `folder`: the log's; `region`: of every frame.
+  FilmsAside(LogFiles& files, std::string folder, const core::PixelRect& region)
+      : files_(files), folder_(std::move(folder)), region_(region) {}
+
+  /// Removes what an earlier run has left.
+  core::Status remove_left();
+  /// Writes the frame's film, which is not there yet, tile by tile. On an error nothing is there.
+  core::Status put(int32_t frame, const core::Film& film, int32_t tile_size);
+  /// Whether the frame's film is there.
+  bool contains(int32_t frame) const { return frames_.contains(frame); }
+  /// A copy of the frame's film, which stays; null where it holds nothing.
+  core::Result<std::shared_ptr<core::Film>> read(int32_t frame) const;
+  /// The frame's film goes, if it is there.
+  void remove(int32_t frame);
+  void remove_all();
+  /// The frames whose films are there, and whether these are too large for a record of the log.
+  const std::map<int32_t, bool>& frames() const { return frames_; }
+
+ private:
+  std::string path(int32_t frame) const;
+
+  LogFiles& files_;
+  const std::string folder_;
+  const core::PixelRect region_;
+  std::map<int32_t, bool> frames_;
+};
+
+}  // namespace hyades::coordinator
