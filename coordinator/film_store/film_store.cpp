@@ -464,8 +464,8 @@ void FilmStore::compact_if_worthwhile(bool room_wanted) {
       if (may_be_too_large(*film)) return;
     }
   }
-  for (const auto& [frame, large] : aside_.frames()) {
-    if (large) return;
+  for (const auto& [frame, put] : aside_.frames()) {
+    if (put.too_large) return;
   }
   const uint64_t snapshot_before = std::exchange(snapshot_bytes_, 0);
   std::map<int32_t, uint64_t> frames_before = std::exchange(frame_bytes_, {});
@@ -502,7 +502,7 @@ core::Status FilmStore::write_snapshot(const FilmLog::Sink& sink) {
   for (const auto& [frame, film] : films) {
     if (status) status = put_film(frame, *film, put);
   }
-  for (const auto& [frame, large] : aside_.frames()) {
+  for (const auto& [frame, known] : aside_.frames()) {
     if (!status) break;
     const auto film = aside_.read(frame);
     if (!film) return film.error();

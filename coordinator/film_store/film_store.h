@@ -193,7 +193,7 @@ class FilmStore {
   std::deque<Item> appended_;  ///< not durable yet, or not settled
   Item* settling_ = nullptr;
   std::map<int32_t, std::shared_ptr<core::Film>> films_;
-  FilmsAside aside_;  ///< films that are set aside, and so not in films_
+  FilmsAside aside_;                        ///< films that are set aside, and so not in films_
   std::map<int32_t, std::string> classes_;  ///< of frames, where workers delivered their films
   std::map<int32_t, FinishedRecord> finished_;
   /// Complete films of frames whose outputs could not be written.

@@ -27,8 +27,10 @@ core::Status FilmsAside::remove_left() {
 core::Status FilmsAside::put(int32_t frame, const core::Film& film, int32_t tile_size) {
   auto file = files_.create(path(frame));
   if (!file) return file.error();
+  Put put{0, may_be_too_large(film)};
   const auto write = [&](std::span<const std::byte> bytes) -> core::Status {
     const uint64_t size = bytes.size();
+    put.bytes += sizeof size + size;
     if (core::Status done = (*file)->write(std::as_bytes(std::span(&size, 1))); !done) return done;
     return (*file)->write(bytes);
   };
@@ -39,13 +41,19 @@ core::Status FilmsAside::put(int32_t frame, const core::Film& film, int32_t tile
     (void)files_.remove(path(frame));
     return written;
   }
-  frames_[frame] = may_be_too_large(film);
+  frames_[frame] = put;
   return {};
 }
 
 core::Result<std::shared_ptr<core::Film>> FilmsAside::read(int32_t frame) const {
+  const auto known = frames_.find(frame);
+  if (known == frames_.end()) return core::Error{"the film is not aside"};
   const auto file = files_.open(path(frame));
   if (!file) return file.error();
+  // Its records tell when they are damaged, but not that some are gone.
+  if ((*file)->size() != known->second.bytes) {
+    return core::Error{"some of it is gone"}.in(path(frame));
+  }
   std::shared_ptr<core::Film> whole;
   for (uint64_t at = 0; at < (*file)->size();) {
     uint64_t size = 0;

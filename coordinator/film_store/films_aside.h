@@ -32,8 +32,13 @@ class FilmsAside {
   /// The frame's film goes, if it is there.
   void remove(int32_t frame);
   void remove_all();
-  /// The frames whose films are there, and whether these are too large for a record of the log.
-  const std::map<int32_t, bool>& frames() const { return frames_; }
+  /// What is known of a film that is there.
+  struct Put {
+    uint64_t bytes = 0;      ///< of its file
+    bool too_large = false;  ///< for a record of the log, it may be
+  };
+  /// The frames whose films are there.
+  const std::map<int32_t, Put>& frames() const { return frames_; }
 
  private:
   std::string path(int32_t frame) const;
@@ -41,7 +46,7 @@ class FilmsAside {
   LogFiles& files_;
   const std::string folder_;
   const core::PixelRect region_;
-  std::map<int32_t, bool> frames_;
+  std::map<int32_t, Put> frames_;
 };
 
 }  // namespace hyades::coordinator
