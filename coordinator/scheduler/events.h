@@ -63,7 +63,9 @@ struct FrameRefused {
   int32_t frame = 0;
   std::string reason;
 };
-/// The answer to SetAside: whether the film takes no memory any more.
+/// The answer to SetAside: whether the film takes no memory any more. It is told before anything
+/// else is done with the job's films, so that it is true when it is heard, whichever SetAside it
+/// answers.
 struct FilmSetAside {
   JobId job{};
   int32_t frame = 0;

@@ -210,6 +210,28 @@ TEST_F(FilmRoom, AFilmThatIsNeededAgainStays) {
   EXPECT_EQ(b.scheduler.films(), 60U);
 }
 
+// There may be two questions at a time; each answer says what is.
+TEST_F(FilmRoom, AFilmIsAskedForAgainBeforeTheFirstAnswer) {
+  add(kJob, plan(60, 2));
+  b.deliver_durably(b.ask(kAnna));
+  b.tell(JobPaused{kJob});
+  tick();
+  b.only<SetAside>();
+  b.tell(JobResumed{kJob});
+  const Lease lease = b.ask(kAnna);
+  b.tell(UnitReturned{kAnna, lease.lease, kJob, lease.units[0]});
+  b.tell(JobPaused{kJob});
+  tick();
+  b.only<SetAside>();
+  b.tell(FilmSetAside{kJob, 1, true});
+  EXPECT_EQ(b.scheduler.films(), 0U);
+  b.tell(JobResumed{kJob});
+  b.ask(kAnna);
+  EXPECT_EQ(b.scheduler.films(), 60U) << "it comes with the unit";
+  b.tell(FilmSetAside{kJob, 1, true});
+  EXPECT_EQ(b.scheduler.films(), 60U);
+}
+
 TEST_F(FilmRoom, FilmsFromBeforeARestartMayBeSetAsideAlready) {
   RestoredJob restored;
   restored.accepted.push_back({{1, {0, 0, 32, 32}, {0, 1}}, digest(1), "class"});

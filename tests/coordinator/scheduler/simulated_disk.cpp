@@ -30,6 +30,9 @@ LogContents SimulatedDisk::open() {
   auto contents = read_log(**log, filter);
   if (!contents) throw "the film log cannot be read: " + contents.error().message;
   log_ = std::move(*log);
+  aside_ = std::make_unique<FilmsAside>(files_, kFolder, plan_.region);
+  if (const auto gone = aside_->remove_left(); !gone)
+    throw "films stay aside: " + gone.error().message;
   if (contents->empty) {
     const auto cut = log_->append(encode_cut({plan_.region, plan_.tile_size, samples()}));
     if (!cut) throw "the film log takes nothing: " + cut.error().message;
@@ -39,6 +42,7 @@ LogContents SimulatedDisk::open() {
 
 void SimulatedDisk::die(bool power, std::mt19937& random) {
   log_.reset();
+  aside_.reset();
   if (power) {
     files_.crash(random);
   } else {
@@ -70,17 +74,44 @@ core::Result<uint64_t> SimulatedDisk::append(const Record& record, uint8_t mark)
 
 core::Status SimulatedDisk::compact(uint64_t through, const std::vector<int32_t>& finished,
                                     const std::map<int32_t, Frame>& frames) {
-  return log_->compact(through, [&](const FilmLog::Sink& sink) {
+  return log_->compact(through, [&](const FilmLog::Sink& sink) -> core::Status {
     const CutRecord cut{plan_.region, plan_.tile_size, samples()};
     core::Status status = sink(encode_cut(cut));
     for (const int32_t frame : finished) {
       if (status) status = sink(encode_finished(frame, {{}, plan_.region}));
     }
     for (const auto& [number, frame] : frames) {
-      if (status) status = write_film(number, {}, *frame.film, cut, frame.worker_class, sink);
+      if (!status) break;
+      if (!aside_->contains(number)) {
+        status = write_film(number, {}, *frame.film, cut, frame.worker_class, sink);
+        continue;
+      }
+      const auto film = aside_->read(number);
+      if (!film) return film.error();
+      if (*film) status = write_film(number, {}, **film, cut, frame.worker_class, sink);
     }
     return status;
   });
+}
+
+core::Status SimulatedDisk::set_aside(int32_t frame, const core::Film& film) {
+  return aside_->put(frame, film, plan_.tile_size);
+}
+
+core::Result<core::Film> SimulatedDisk::fetch(int32_t frame) {
+  auto film = aside_->read(frame);
+  aside_->remove(frame);
+  if (!film) return film.error();
+  return *film ? std::move(**film) : blank();
+}
+
+void SimulatedDisk::damage_aside(int32_t frame) {
+  const std::string start = std::string(kFolder) + "/" + std::to_string(frame) + ".";
+  for (const std::string& path : files_.paths()) {
+    if (!path.starts_with(start)) continue;
+    std::vector<std::byte>& bytes = files_.bytes(path);
+    bytes.resize(bytes.size() / 2);
+  }
 }
 
 uint64_t SimulatedDisk::used() {

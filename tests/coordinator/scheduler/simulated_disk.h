@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "coordinator/film_store/film_records.h"
+#include "coordinator/film_store/films_aside.h"
 #include "coordinator/scheduler/actions.h"
 #include "core/film/film.h"
 #include "tests/coordinator/film_store/faulty_files.h"
@@ -40,7 +41,20 @@ class SimulatedDisk {
     const core::Film* film = nullptr;
     std::string worker_class;
   };
-  /// The films and finished frames replace the records up to number `through`.
+  // Films that are not in memory, as FilmStore keeps them.
+
+  /// Writes the frame's film beside the log.
+  core::Status set_aside(int32_t frame, const core::Film& film);
+  bool is_aside(int32_t frame) const { return aside_ && aside_->contains(frame); }
+  bool any_aside() const { return aside_ && !aside_->frames().empty(); }
+  /// The frame's film, which is not there any more.
+  core::Result<core::Film> fetch(int32_t frame);
+  void forget_aside(int32_t frame) { aside_->remove(frame); }
+  /// Some of the file is lost, as a disk may lose it.
+  void damage_aside(int32_t frame);
+
+  /// The films, also those that are set aside, and finished frames replace the records up to number
+  /// `through`.
   core::Status compact(uint64_t through, const std::vector<int32_t>& finished,
                        const std::map<int32_t, Frame>& frames);
 
@@ -61,6 +75,7 @@ class SimulatedDisk {
   const uint64_t salt_;
   FaultyFiles files_;
   std::unique_ptr<FilmLog> log_;
+  std::unique_ptr<FilmsAside> aside_;
 };
 
 }  // namespace hyades::coordinator

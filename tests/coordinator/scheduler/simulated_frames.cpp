@@ -15,11 +15,6 @@ void SimulatedWorld::act(const OpenFrame& a) {
   }
 }
 
-void SimulatedWorld::act(const SetAside& a) {
-  ++films_set_aside;
-  tell_later(FilmSetAside{a.job, a.frame, !fault()});
-}
-
 core::Film SimulatedWorld::oracle_of(const SimJob& job, int32_t number) {
   if (job.plan.rounds.empty()) return job.disk->oracle(number);
   core::Film film = job.disk->blank();
@@ -62,20 +57,23 @@ void SimulatedWorld::act(const FinishFrame& a) {
     }
   }
   if (!wrong && a.volume != volume) fail("a frame is finished with other batches than it needs");
-  if (real_store_ && !wrong && frame.film.digest() != oracle_of(job, a.frame).digest()) {
-    fail("a film is finished whose bits are not the frame's");
-  }
   frames_wrong += wrong;
   if (!wrong && frame.sum != oracle) fail("a film is finished that is not the frame's");
-  if (frame.unfinishable || fault()) {
-    tell_later(FinishFailed{a.job, a.frame, "no room for a picture"});
-  } else {
+  call(job, [this, a, wrong, row, &job, &frame] {
+    if (real_store_ && !fetch(job, a.frame)) return;
+    if (frame.lost || frame.over) return;  // it has failed meanwhile
+    if (real_store_ && !wrong && frame.film.digest() != oracle_of(job, a.frame).digest()) {
+      fail("a film is finished whose bits are not the frame's");
+    }
+    if (frame.unfinishable || fault()) {
+      return tell_later(FinishFailed{a.job, a.frame, "no room for a picture"});
+    }
     after(delay(), [this, a, row, g = generation_] {
       if (g != generation_ || jobs_.at(a.job).ended) return;
       jobs_.at(a.job).rows[a.frame] = row;
       tell_later(FinishDone{a.job, a.frame});
     });
-  }
+  });
 }
 
 void SimulatedWorld::act(const FrameDone& a) {
@@ -83,7 +81,9 @@ void SimulatedWorld::act(const FrameDone& a) {
   SimFrame& frame = frame_of(a.job, a.frame);
   if (frame.over) fail("a frame is over twice");
   if (frame.poisoned || frame.refused || frame.unfinishable) fail("a hopeless frame is done");
+  if (frame.lost) fail("a frame is done whose film is lost");
   frame.over = true;
+  forget_film(jobs_.at(a.job), frame, a.frame);
 }
 
 void SimulatedWorld::act(const FrameFailed& a) {
@@ -91,10 +91,11 @@ void SimulatedWorld::act(const FrameFailed& a) {
   SimFrame& frame = frame_of(a.job, a.frame);
   if (frame.over) fail("a frame is over twice");
   if (!frame.poisoned && !frame.refused && !frame.unfinishable &&
-      a.reason != "no room for a picture" && !broken_) {
+      a.reason != "no room for a picture" && !broken_ && !frame.lost) {
     fail("a good frame failed: " + a.reason);
   }
   frame.over = true;
+  forget_film(jobs_.at(a.job), frame, a.frame);
 }
 
 void SimulatedWorld::act(const JobEnded& a) {
@@ -103,6 +104,7 @@ void SimulatedWorld::act(const JobEnded& a) {
   if (a.cancelled != job.cancelled) fail("a job is cancelled that nobody cancelled");
   if (!a.cancelled && a.done + a.failed != job.plan.frames.size()) fail("frames are missing");
   job.ended = true;
+  for (auto& [number, frame] : job.frames) forget_film(job, frame, number);
 }
 
 void SimulatedWorld::act(const Conflict&) {

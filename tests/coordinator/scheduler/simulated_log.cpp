@@ -1,4 +1,6 @@
 // The store of a world with real films: the film log over a disk that fails.
+#include <algorithm>
+
 #include "tests/coordinator/scheduler/simulated_world.h"
 
 namespace hyades::coordinator {
@@ -7,7 +9,7 @@ namespace hyades::coordinator {
 /// elsewhere.)
 void SimulatedWorld::take_up(SimJob& job) {
   const LogContents contents = job.disk->open();
-  job.settled = job.disk->durable();
+  job.settled = job.heard = job.disk->durable();
   job.stored.finished.clear();
   job.stored.accepted.clear();
   for (const auto& [frame, record] : contents.finished) job.stored.finished.push_back(frame);
@@ -24,6 +26,9 @@ void SimulatedWorld::take_up(SimJob& job) {
   for (auto& [number, frame] : job.frames) {
     const auto film = contents.films.find(number);
     frame.film = film == contents.films.end() ? job.disk->blank() : *film->second;
+    frame.in_memory = film != contents.films.end();
+    frame.lost = false;
+    frame.asked_aside = 0;
     const auto units = contents.units.find(number);
     if (units != contents.units.end()) frame.worker_class = units->second.front().worker_class;
   }
@@ -85,11 +90,15 @@ void SimulatedWorld::commit(SimJob& job) {
 
 /// The scheduler hears what is durable, in order.
 void SimulatedWorld::settle(SimJob& job, uint64_t durable) {
-  while (!job.appended.empty() && job.appended.front().first <= durable) {
+  job.heard = std::max(job.heard, durable);
+  run_calls(job);
+  if (job.telling) return;  // it comes to this afterwards
+  while (!job.appended.empty() && job.appended.front().first <= job.heard) {
     const auto [sequence, persist] = job.appended.front();
     job.appended.pop_front();
     job.settled = sequence;
     store(persist.record);
+    tell_of_lost_films();
     tell(Persisted{persist.id});
   }
   // Once it is compacted, the log does not know any more whose film is whose.
@@ -106,7 +115,9 @@ void SimulatedWorld::compact(SimJob& job) {
   if (power_goes) {
     files.fail_from_operation(files.operations() + static_cast<uint64_t>(number(0, 12)));
   }
-  compactions += job.disk->compact(job.settled, job.stored.finished, frames).ok();
+  const bool done = job.disk->compact(job.settled, job.stored.finished, frames).ok();
+  compactions += done;
+  aside.compactions += done && job.disk->any_aside();
   if (power_goes) crash_coordinator(true);
 }
 

@@ -36,7 +36,8 @@ void SimulatedWorld::nature() {
   if (chance(fault_rate_ / 4) && scheduler_) crash_coordinator(real_store_ && chance(0.5));
   if (real_store_ && chance(fault_rate_ / 4) && scheduler_) disks_fill();
   if (chance(fault_rate_ / 4)) now_ += std::chrono::seconds(number(1, 100));
-  if (chance(fault_rate_ / 2) && !job->second.ended) {
+  if ((chance(fault_rate_ / 2) || (cramped_ && chance(job->second.paused ? 0.15 : 0.5))) &&
+      !job->second.ended) {
     job->second.paused = !job->second.paused;
     if (job->second.paused) {
       tell(JobPaused{job->first});

@@ -71,15 +71,21 @@ void SimulatedWorld::store_later(const Persist& a) {
     // Durable now; but nobody hears of it if the coordinator dies before the next line runs.
     after(delay(), [this, a, refuse, g] {
       if (g != generation_) return;
-      --storing_[frame_of(a.record)];
-      unsettled_.erase({frame_of(a.record).first, a.id});
-      if (refuse) {
-        tell(PersistFailed{a.id, "disk full"});
-      } else {
-        tell(Persisted{a.id});
-      }
+      // That a frame has failed its film store hears first.
+      if (!std::holds_alternative<FrameFailedRecord>(a.record)) return stored(a, refuse);
+      call(jobs_.at(frame_of(a.record).first), [this, a, refuse] { stored(a, refuse); });
     });
   });
+}
+
+void SimulatedWorld::stored(const Persist& a, bool refused) {
+  --storing_[frame_of(a.record)];
+  unsettled_.erase({frame_of(a.record).first, a.id});
+  if (refused) {
+    tell(PersistFailed{a.id, "disk full"});
+  } else {
+    tell(Persisted{a.id});
+  }
 }
 
 /// Whether a film of the tile is still on its way to the disk, or was said to be and nobody knows
@@ -124,6 +130,10 @@ void SimulatedWorld::store(const FrameRestartedRecord& again) {
 
 void SimulatedWorld::store(const TileVoidedRecord& voided) {
   SimJob& job = jobs_.at(voided.job);
+  if (real_store_ && !job.ended) {
+    aside.voids += job.disk->is_aside(voided.frame);
+    if (fetch(job, voided.frame)) job.frames.at(voided.frame).film.erase(voided.tile);
+  }
   std::erase_if(job.stored.accepted, [&](const AcceptedUnit& u) {
     const bool there = u.unit.frame == voided.frame && u.unit.tile == voided.tile;
     if (there) job.stored_units.erase(name(u.unit));
@@ -145,7 +155,10 @@ void SimulatedWorld::act(const Merge& a) {
   add_to_film(jobs_.at(a.job), accepted, generation_ + 1);
   if (!real_store_) return;
   SimFrame& frame = frame_of(a.job, a.unit.frame);
+  if (frame.lost) fail("a film is merged with one that is lost");
   frame.worker_class = accepted.worker_class;
+  if (!fetch(jobs_.at(a.job), a.unit.frame)) return;
+  frame.in_memory = true;
   const core::Status merged =
       frame.film.merge(jobs_.at(a.job).disk->film_of(accepted.unit, accepted.digest[1]));
   if (!merged) fail("a film cannot be merged: " + merged.error().message);
@@ -154,7 +167,7 @@ void SimulatedWorld::act(const Merge& a) {
 /// By the store, when what it was handed before is merged. It may take its time, and die meanwhile.
 void SimulatedWorld::act(const JudgeTile& a) {
   ++tiles_judged;
-  const SimJob& job = jobs_.at(a.job);
+  SimJob& job = jobs_.at(a.job);
   std::set<uint32_t> there;
   bool wrong = false;
   for (const auto& [place, batch] : job.frames.at(a.frame).batches) {
@@ -166,8 +179,11 @@ void SimulatedWorld::act(const JudgeTile& a) {
   if (there.size() != a.batches || *there.rbegin() + 1 != a.batches) {
     fail("a tile is judged by other batches than those planned");
   }
-  tell_later(TileJudged{a.job, a.frame, a.tile, a.serial,
-                        job.is_enough(a.frame, a.tile, a.batches, wrong)});
+  const TileJudged judged{a.job, a.frame, a.tile, a.serial,
+                          job.is_enough(a.frame, a.tile, a.batches, wrong)};
+  call(job, [this, judged, &job] {
+    if (!real_store_ || fetch(job, judged.frame)) tell_later(judged);
+  });
 }
 
 void SimulatedWorld::act(const FrameRestarted& a) {
@@ -176,7 +192,10 @@ void SimulatedWorld::act(const FrameRestarted& a) {
   frame.batches.clear();
   frame.sum = 0;
   frame.over = false;
-  if (real_store_) frame.film = jobs_.at(a.job).disk->blank();
+  frame.lost = false;
+  if (!real_store_) return;
+  forget_film(jobs_.at(a.job), frame, a.frame);
+  frame.film = jobs_.at(a.job).disk->blank();
 }
 
 void SimulatedWorld::act(const TileVoided& a) {
@@ -184,7 +203,6 @@ void SimulatedWorld::act(const TileVoided& a) {
   SimFrame& frame = frame_of(a.job, a.frame);
   if (frame.over) fail("a tile of a frame that is over is voided");
   if (jobs_.at(a.job).plan.whole_frames) fail("a tile is voided that cannot be taken out");
-  if (real_store_) frame.film.erase(a.tile);
   std::erase_if(frame.batches, [&](const auto& entry) {
     const auto& [place, batch] = entry;
     if (std::get<0>(place) != a.tile.x0 || std::get<1>(place) != a.tile.y0) return false;

@@ -67,7 +67,11 @@ struct SimBatch {
 struct SimFrame {
   std::map<PlaceOfBatch, SimBatch> batches;  ///< that have been merged
   uint64_t sum = 0;
-  core::Film film;  ///< the real one, where the store is
+  core::Film film;         ///< the real one, where the store is
+  bool in_memory = false;  ///< there is a real one; it may be aside otherwise
+  bool lost = false;       ///< it was aside and could not be read again
+  std::string digest;      ///< of the film that is aside
+  int asked_aside = 0;     ///< SetAside was said so often and is not answered
   std::string worker_class;
   bool poisoned = false;
   bool refused = false;
@@ -94,7 +98,10 @@ struct SimJob {
   std::unique_ptr<SimulatedDisk> disk;
   std::deque<std::pair<uint64_t, Persist>> appended;  ///< numbers in the log; nobody has heard yet
   uint64_t settled = 0;                               ///< number of the last that somebody has
+  uint64_t heard = 0;                                 ///< of the last that is known to be durable
   bool committing = false;                            ///< a group is about to be stored
+  std::deque<std::function<void()>> calls;            ///< what its film store is told to do
+  bool telling = false;                               ///< which waits until somebody hears it
   std::map<int32_t, SimFrame> frames;
   bool ended = false;
   bool paused = false;

@@ -3,7 +3,7 @@
 
 namespace hyades::coordinator {
 
-SimulatedWorld::SimulatedWorld(uint64_t seed) : random_(seed) {
+SimulatedWorld::SimulatedWorld(uint64_t seed, bool cramped) : random_(seed), cramped_(cramped) {
   options_.lease_time = std::chrono::seconds(5);
   options_.copy_after = chance(0.5) ? Duration{0} : std::chrono::milliseconds(number(500, 4000));
   options_.unit_time = std::chrono::milliseconds(number(1, 3000));
@@ -11,12 +11,13 @@ SimulatedWorld::SimulatedWorld(uint64_t seed) : random_(seed) {
   fault_rate_ = chance(0.15) ? 0 : 0.15 * uniform();
   faults_end_ = TimePoint(std::chrono::seconds(number(5, 60)));
   const int classes = number(1, 2);
-  const auto workers = static_cast<size_t>(number(classes, 7));
+  const auto workers = static_cast<size_t>(number(cramped_ ? 3 : classes, 7));
   for (size_t i = 0; i < workers; ++i) {
     SimWorker& w = workers_.emplace_back();
     w.name = "class " + std::to_string(i % static_cast<size_t>(classes));
     w.threads = number(1, 3);
     w.slowness = chance(0.1) ? 20 : 0.2 + 2 * uniform();
+    if (cramped_) w.slowness *= 2;  // so that they live long enough
   }
   // Where two agree against one, the wrong one is found out: there must be enough of a class.
   if (classes == 1 && workers > 2 && chance(0.5)) {
@@ -40,7 +41,13 @@ SimulatedWorld::SimulatedWorld(uint64_t seed) : random_(seed) {
   options_.scene_time = std::chrono::milliseconds(chance(0.5) ? 0 : number(1, 3000));
   real_store_ = chance(0.5);
   if (chance(0.4)) options_.film_memory = static_cast<uint64_t>(number(1, 5));
-  const int jobs = number(1, 3);
+  if (cramped_) {
+    real_store_ = true;
+    options_.film_memory = static_cast<uint64_t>(number(1, 4));
+    options_.unit_time = std::chrono::milliseconds(number(1, 400));
+    faults_end_ = TimePoint(std::chrono::seconds(number(20, 200)));
+  }
+  const int jobs = cramped_ ? 3 : number(1, 3);
   for (int i = 1; i <= jobs; ++i) make_job(JobId{static_cast<uint64_t>(i)});
 }
 
@@ -71,10 +78,11 @@ void SimulatedWorld::make_job(JobId id) {
   plan.region = {number(-5, 5), number(0, 5), number(6, 18), number(6, 18)};
   plan.tile_size = number(4, 9);
   plan.batches = static_cast<uint32_t>(long_one ? number(60, 140) : number(1, 9));
+  if (cramped_) plan.batches += static_cast<uint32_t>(number(10, 30));
   plan.priority = number(0, 2);
   plan.owner = chance(0.5) ? "eve" : "fay";
   plan.frames_in_flight = static_cast<uint32_t>(number(1, 3));
-  plan.film_bytes = static_cast<uint64_t>(number(0, 3));
+  plan.film_bytes = static_cast<uint64_t>(number(cramped_ ? 1 : 0, 3));
   plan.max_workers = chance(0.3) ? static_cast<uint32_t>(number(1, 3)) : 0;
   if (chance(0.3)) plan.order = FrameOrder::progressive;
   plan.whole_frames = chance(0.4);
@@ -123,6 +131,7 @@ void SimulatedWorld::start_coordinator() {
     for (const int32_t f : job.stored.finished) job.frames[f].over = true;
     for (const int32_t f : job.stored.failed) job.frames[f].over = true;
     for (const AcceptedUnit& a : job.stored.accepted) add_to_film(job, a, 0);
+    if (real_store_) set_aside_at_start(job);
     tell(JobAdded{id, job.plan, job.stored});
     if (job.paused) tell(JobPaused{id});
   }
@@ -136,12 +145,19 @@ void SimulatedWorld::crash_coordinator(bool power) {
   std::mt19937 chances(static_cast<uint32_t>(random_()));
   for (auto& [id, job] : jobs_) {
     if (!job.disk) continue;
+    if (job.disk->any_aside() || job.telling || !job.calls.empty()) {
+      ++(power ? aside.power_cuts : aside.kills);
+    }
     job.disk->die(power, chances);
     job.appended.clear();
     job.committing = false;
+    job.calls.clear();
+    job.telling = false;
+    for (auto& [number, frame] : job.frames) frame.in_memory = false;
   }
   scheduler_.reset();
   ++generation_;
+  lost_.clear();
   storing_.clear();
   unsettled_.clear();
   for (SimWorker& w : workers_) {
@@ -158,10 +174,16 @@ void SimulatedWorld::crash_coordinator(bool power) {
 
 void SimulatedWorld::tell(const Event& event) {
   if (!scheduler_) return;
-  if (const auto* result = std::get_if<ResultArrived>(&event); result && unwelcome(*result)) return;
+  if (const auto* result = std::get_if<ResultArrived>(&event)) {
+    if (unwelcome(*result)) return;
+    const SimJob& job = jobs_.at(result->job);
+    aside.results += job.disk && job.disk->is_aside(result->unit.frame);
+  }
   for (const Action& action : scheduler_->handle(event, now_)) {
     std::visit([this](const auto& a) { act(a); }, action);
   }
+  tell_of_lost_films();
+  check_room();
   if (chance(0.02)) check_audit();
   if (const auto wake = scheduler_->next_wake(); wake && !woken_) {
     woken_ = true;

@@ -21,13 +21,32 @@ namespace hyades::coordinator {
 /// and store, driven by one seed. Messages are delayed, reordered, doubled and dropped; workers die
 /// or lose the connection; the coordinator dies and comes back with what its store holds; the store
 /// refuses; in half of the worlds it is the real film log with real films (SimulatedDisk), whose
-/// disk fills, fails, and forgets what was not synced when the power goes; some workers' films are
-/// wrong, others fail all; units and finishing fail; jobs are paused and cancelled; the clock
-/// jumps. After a while the faults end, and then every job must end too. Throws a std::string with
-/// what went wrong.
+/// disk fills, fails, and forgets what was not synced when the power goes, and films that are not
+/// in memory lie on it beside the log (FilmsAside); some workers' films are wrong, others fail all;
+/// units and finishing fail; jobs are paused and cancelled; the clock jumps. After a while the
+/// faults end, and then every job must end too. Throws a std::string with what went wrong.
 class SimulatedWorld {
  public:
-  explicit SimulatedWorld(uint64_t seed);
+  /// Films that left memory, of worlds with the real store.
+  struct FilmsAsideSeen {
+    uint64_t done = 0;         ///< set aside
+    uint64_t at_start = 0;     ///< likewise, when the coordinator started
+    uint64_t refused = 0;      ///< by the disk
+    uint64_t asked_twice = 0;  ///< before the first answer
+    uint64_t fetched = 0;
+    uint64_t lost = 0;
+    // What came while the film was aside.
+    uint64_t results = 0;
+    uint64_t voids = 0;  ///< of a tile
+    uint64_t compactions = 0;
+    uint64_t power_cuts = 0;
+    uint64_t kills = 0;  ///< of the coordinator
+
+    void add(const FilmsAsideSeen& other);
+  };
+
+  /// `cramped`: there is memory for next to no films, and jobs are paused all the time.
+  explicit SimulatedWorld(uint64_t seed, bool cramped = false);
 
   /// Lives until all jobs have ended.
   void run();
@@ -53,13 +72,13 @@ class SimulatedWorld {
   uint64_t frames_wrong = 0;  ///< finished before anybody compared
   uint64_t tiles_judged = 0;
   uint64_t tiles_spared = 0;
-  uint64_t films_set_aside = 0;
   // Of the real store.
   uint64_t films_replayed = 0;
   uint64_t power_cuts = 0;
   uint64_t failed_commits = 0;
   uint64_t refused = 0;  ///< appends
   uint64_t compactions = 0;
+  FilmsAsideSeen aside;
 
  private:
   [[noreturn]] static void fail(const std::string& what) { throw what; }
@@ -93,6 +112,7 @@ class SimulatedWorld {
   void act(const Persist& a);
   static std::pair<JobId, int32_t> frame_of(const Record& record);
   void store_later(const Persist& a);
+  void stored(const Persist& a, bool refused);
   /// Whether a film of the tile is still on its way to the disk, or was said to be and nobody knows
   /// yet that it has arrived.
   bool stores_unit_of(const TileVoidedRecord& voided) const;
@@ -127,7 +147,6 @@ class SimulatedWorld {
   /// The film that the frame must have in the end.
   static core::Film oracle_of(const SimJob& job, int32_t number);
   void act(const OpenFrame& a);
-  void act(const SetAside& a);
   void act(const FinishFrame& a);
   void act(const FrameDone& a);
   void act(const FrameFailed& a);
@@ -137,6 +156,21 @@ class SimulatedWorld {
   void act(const Confirmed&) {}
   void act(const FrameReopened& a);
   void check_rows();
+
+  // simulated_aside.cpp
+  void act(const SetAside& a);
+  void set_aside(SimJob& job, const SetAside& a, bool refuse);
+  /// The job's film store does this after all that it was told to do before.
+  void call(SimJob& job, std::function<void()> what);
+  /// It does what it was told, until it has to tell something itself.
+  void run_calls(SimJob& job);
+  /// The frame's film is in memory, if there is one. Whether it could be had.
+  bool fetch(SimJob& job, int32_t number);
+  /// The frame's film is gone.
+  static void forget_film(SimJob& job, SimFrame& frame, int32_t number);
+  void tell_of_lost_films();
+  void set_aside_at_start(SimJob& job);
+  void check_room();
 
   // simulated_workers.cpp
   // The scheduler's number 0 is nobody's.
@@ -183,6 +217,7 @@ class SimulatedWorld {
   bool broken_ = false;      ///< one worker fails everything
   bool choosy_ = false;      ///< jobs do not go to every worker
   bool real_store_ = false;  ///< the film log and films are the real ones
+  bool cramped_ = false;     ///< few films have room in memory
   bool woken_ = false;       ///< a Tick is on its way
   bool restoring_ = false;   ///< not all jobs are known yet, nor what is said of them
   std::priority_queue<Happening> events_;
@@ -192,6 +227,7 @@ class SimulatedWorld {
   std::map<std::pair<JobId, int32_t>, int> storing_;  ///< records on their way to the disk
   std::map<RecordId, AcceptedUnit> records_;          ///< of this coordinator
   std::set<std::pair<JobId, RecordId>> unsettled_;    ///< films on their way to the disk
+  std::vector<std::pair<JobId, int32_t>> lost_;  ///< frames whose films are, before that is told
 };
 
 }  // namespace hyades::coordinator

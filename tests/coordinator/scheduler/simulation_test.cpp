@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cstdlib>
+#include <string>
 
 #include "tests/coordinator/scheduler/simulated_world.h"
 
@@ -134,6 +135,51 @@ TEST(Simulation, EveryBatchCountsOnceAndEveryJobEnds) {
   EXPECT_GE(compactions, worlds / 10);
   EXPECT_GE(judged, worlds);
   EXPECT_GE(spared, worlds / 4);
+}
+
+/// Worlds in which next to no film has room in memory and jobs are paused all the time, so that
+/// films leave it and come back while all else goes wrong.
+TEST(Simulation, FilmsThatLeaveMemoryComeBack) {
+  const uint64_t only = number_from("HYADES_SIM_CRAMPED_SEED", 0);
+  const uint64_t worlds = only != 0 ? 1 : number_from("HYADES_SIM_CRAMPED_WORLDS", 400);
+  SimulatedWorld::FilmsAsideSeen seen;
+  for (uint64_t i = 0; i < worlds; ++i) {
+    const uint64_t seed = only != 0 ? only : i + 1;
+    SimulatedWorld world(seed, true);
+    try {
+      world.run();
+    } catch (const std::string& what) {
+      FAIL() << what << "\nlive it again with HYADES_SIM_CRAMPED_SEED=" << seed;
+    }
+    seen.add(world.aside);
+  }
+  std::printf(
+      "%llu cramped worlds: %llu films set aside, %llu at a start, %llu that the disk refused, "
+      "%llu "
+      "asked for twice; %llu fetched, %llu lost\n",
+      static_cast<unsigned long long>(worlds), static_cast<unsigned long long>(seen.done),
+      static_cast<unsigned long long>(seen.at_start), static_cast<unsigned long long>(seen.refused),
+      static_cast<unsigned long long>(seen.asked_twice),
+      static_cast<unsigned long long>(seen.fetched), static_cast<unsigned long long>(seen.lost));
+  std::printf(
+      "while one was aside: %llu results for it, %llu tiles voided of it, %llu compactions, %llu "
+      "power cuts, %llu kills\n",
+      static_cast<unsigned long long>(seen.results), static_cast<unsigned long long>(seen.voids),
+      static_cast<unsigned long long>(seen.compactions),
+      static_cast<unsigned long long>(seen.power_cuts),
+      static_cast<unsigned long long>(seen.kills));
+  if (only != 0) return;
+  EXPECT_GE(seen.done, 2 * worlds);
+  EXPECT_GE(seen.at_start, worlds);
+  EXPECT_GE(seen.refused, worlds / 5);
+  EXPECT_GE(seen.asked_twice, 1U);
+  EXPECT_GE(seen.fetched, 2 * worlds);
+  EXPECT_GE(seen.lost, worlds / 50);
+  EXPECT_GE(seen.results, worlds);
+  EXPECT_GE(seen.voids, worlds / 50);
+  EXPECT_GE(seen.compactions, worlds / 4);
+  EXPECT_GE(seen.power_cuts, worlds / 4);
+  EXPECT_GE(seen.kills, worlds / 8);
 }
 
 }  // namespace
