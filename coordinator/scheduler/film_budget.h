@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <set>
 #include <string>
 #include <utility>
@@ -28,6 +29,11 @@ class FilmBudget {
   const std::set<std::pair<JobId, uint32_t>>& holders() const { return holders_; }
   /// Whether films of the job's owner take more than half of what all may.
   bool most_are_of(const ScheduledJob& job) const;
+  /// Whether the job's owner, who has more than half, has kept films of others out for so long that
+  /// it is their turn: a minute, and as long again as it takes to set the own ones aside.
+  bool must_yield(const ScheduledJob& job) const;
+  /// Whether the job's owner has just done so, and those others have not begun yet.
+  bool has_yielded(const ScheduledJob& job) const;
   /// Whether a film of the job fits beside those that are there.
   bool has_room(const ScheduledJob& job) const { return bytes_ == 0 || fits(job, limit_); }
   /// Whether it may begin where none of the others can be set aside.
@@ -51,7 +57,11 @@ class FilmBudget {
   std::map<std::string, uint64_t> bytes_of_;  ///< by owner
   std::set<std::pair<JobId, uint32_t>> holders_;
   bool refused_ = false;
-  uint64_t wanted_ = 0;  ///< of the largest film that was refused
+  uint64_t wanted_ = 0;                 ///< of the largest film that was refused
+  std::optional<std::string> largest_;  ///< the owner who has more than half
+  std::optional<TimePoint> kept_out_;   ///< since when no film of others has had room beside his
+  TimePoint refused_other_;             ///< when that was so for the last time
+  std::optional<std::string> yielded_;  ///< the owner who has made room for others
 };
 
 }  // namespace hyades::coordinator

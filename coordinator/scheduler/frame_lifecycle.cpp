@@ -313,7 +313,8 @@ std::optional<TimePoint> FrameLifecycle::stands_still_since(const ScheduledJob& 
     return std::nullopt;
   }
   if (!slot.watch) slot.watch = FrameSlot::Watch{step_.now, ledger.durable()};
-  const Duration patience = options_.class_patience * (1U << std::min(slot.stood_still, 10U));
+  Duration patience = options_.class_patience * (1U << std::min(slot.stood_still, 10U));
+  if (films_.refused()) patience /= 4;  // others wait for the room of its film too
   const auto [since, durable] = *slot.watch;
   if (step_.now < since + patience) return std::nullopt;
   slot.watch.reset();

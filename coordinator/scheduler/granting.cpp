@@ -231,7 +231,7 @@ std::optional<FramePlace> Granting::next_of(const FairShare& share, WorkerId id,
         if (!has_units_for(*job, frame, id, worker)) continue;
         const bool fits = film_fits(*job, frame);
         own = own || !fits;
-        begun = begun || (!fits && !films_.most_are_of(*job));
+        begun = begun || (!fits && !films_.most_are_of(*job) && !films_.has_yielded(*job));
         if (own) continue;
       }
       const Welcome welcome = welcome_at(place, id, worker, fresh);
@@ -376,10 +376,11 @@ std::optional<FramePlace> Granting::find_loaded(WorkerId id, const Worker& worke
   return std::nullopt;
 }
 
-/// Whether the frame has a film, or it fits beside those of other frames; or these cannot be set
-/// aside though nobody works at any.
+/// Whether the frame has a film, unless it is others' turn; or it fits beside those of other
+/// frames; or these cannot be set aside though nobody works at any.
 bool Granting::film_fits(const ScheduledJob& job, const FrameSlot& slot) const {
-  if (slot.film || films_.has_room(job)) return true;
+  if (slot.film) return slot.stays_until > step_.now || !films_.must_yield(job);
+  if (films_.has_room(job) && !films_.has_yielded(job)) return true;
   if (crammed_ && films_.has_room_in_need(job) && !any_film_in_work()) return true;
   films_.refuse(job);
   return false;
@@ -387,7 +388,7 @@ bool Granting::film_fits(const ScheduledJob& job, const FrameSlot& slot) const {
 
 /// Has films set aside: those of paused jobs in any case, as they may stay so for ever, and where
 /// others have no room those of frames that nobody has worked at for a while, which hold nobody up
-/// so: their jobs have no workers.
+/// so, as their jobs have no workers; or that whoever has most of the room lets go in turn.
 void Granting::make_room() {
   if (!next_room_ || step_.now < *next_room_) return;
   bool paused = false;  // films of paused jobs are there
@@ -401,7 +402,8 @@ void Granting::make_room() {
     if (!slot.leaving && slot.stays_until <= step_.now && FrameLifecycle::may_leave(slot)) {
       if (place.job->paused) {
         frames_.set_aside(*place.job, slot);
-      } else if (step_.now - std::max(slot.last_leased, slot.film_since) >= kIdle) {
+      } else if (step_.now - std::max(slot.last_leased, slot.film_since) >= kIdle ||
+                 films_.must_yield(*place.job)) {
         idle.push_back(place);
       } else {
         soon = true;

@@ -140,6 +140,44 @@ TEST_F(FilmRoom, FilmsThatNobodyWorksAtNeverTakeMoreThanThereIs) {
   }
 }
 
+// A film that takes nearly all of the room, of a frame that renders for days.
+TEST_F(FilmRoom, WhoeverHasMostOfItLetsOthersHaveTheirTurn) {
+  JobPlan large = plan(99, 1000);
+  large.owner = "eve";
+  JobPlan small = plan(30, 1);
+  small.owner = "ann";
+  add(kJob, large);
+  std::map<WorkerId, Lease> leases = {{kAnna, b.ask(kAnna)}, {kBert, b.ask(kBert)}};
+  add(kOther, small);
+  EXPECT_TRUE(b.scheduler.waits_for_film(kOther));
+  int waited = 0;  // seconds
+  std::vector<SetAside> aside;
+  while (waited < 200 && aside.empty()) {
+    tick();
+    ++waited;
+    aside = b.all<SetAside>();
+    const WorkerId worker = waited % 2 == 0 ? kAnna : kBert;
+    const auto lease = leases.extract(worker);
+    if (lease.empty()) continue;
+    b.deliver_durably(lease.mapped());
+    b.tell(WorkRequested{worker, 1});
+    for (const Lease& more : b.all<Lease>()) {
+      ASSERT_EQ(more.job, kJob);
+      leases.emplace(more.worker, more);
+    }
+  }
+  ASSERT_EQ(aside.size(), 1U) << "the small job waits as long as the large one renders";
+  EXPECT_GE(waited, 60) << "a large film has its turn too";
+  EXPECT_LE(waited, 75);
+  b.tell(FilmSetAside{kJob, 1, true});
+  const Lease others = b.only<Lease>();
+  EXPECT_EQ(others.job, kOther);
+  b.deliver_durably(others);
+  b.tell(FinishDone{kOther, 1});
+  b.tell(Persisted{b.only<Persist>().id});
+  EXPECT_EQ(b.ask(kAnna).job, kJob) << "the large one comes back";
+}
+
 TEST_F(FilmRoom, JobsWithoutWorkersHoldNobodyUp) {
   JobPlan choosy = plan(60, 2);
   choosy.needs.tags = {"gpu"};
