@@ -27,9 +27,7 @@ void print_json(const Json& json) {
 }
 
 std::string job_look(const v1::Job& job) {
-  const bool waits = job.state() == v1::JOB_STATE_RUNNING && job.leased() == 0 &&
-                     job.samples_done() < job.samples();
-  return waits ? "waiting" : state_name(job.state());
+  return job.waiting() ? "waiting" : state_name(job.state());
 }
 
 std::string job_trouble(const v1::Job& job) {

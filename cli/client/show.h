@@ -19,7 +19,7 @@ using farm::to_json;
 /// Prints JSON in one line to standard output.
 void print_json(const Json& json);
 
-/// What people call a job's state: one that runs is waiting while no worker has any of it.
+/// What people call a job's state: that of one that runs, and waits, is "waiting".
 std::string job_look(const v1::Job& job);
 
 /// Why it does not get on, in a few words; empty where it does.

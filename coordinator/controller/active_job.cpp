@@ -214,6 +214,7 @@ v1::Job describe(const StoredJob& job) {
   wire.set_owner_proven(job.owner_proven);
   wire.set_priority(job.priority);
   wire.set_state(static_cast<v1::JobState>(job.state));  // the numbers are the same
+  wire.set_waiting(job.state == StoredState::running);   // one that is not open yet
   wire.set_frames(job.frames);
   wire.set_frames_done(job.frames_done);
   wire.set_frames_failed(job.frames_failed);
@@ -258,7 +259,8 @@ v1::Job ActiveJob::describe(uint32_t leased) const {
     wire.set_seconds_left(static_cast<double>(samples - std::min(samples_done, samples)) /
                           speed.per_second());
   }
-  if (is_waiting(leased)) wire.set_reason(farm::wire_text(obstacle));
+  wire.set_waiting(is_waiting(leased));
+  if (wire.waiting()) wire.set_reason(farm::wire_text(obstacle));
   if (!row_trouble.empty()) wire.set_reason(farm::wire_text(row_trouble));
   if (!trouble.empty()) wire.set_reason(farm::wire_text(trouble));
   return wire;

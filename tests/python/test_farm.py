@@ -51,6 +51,7 @@ class WholeFarm(unittest.TestCase):
         job = scene(samples=256)
         submitted = self.farm.submit(job, priority=3, tags=[])
         self.assertEqual((submitted.state, submitted.frames, submitted.priority), ("running", 3, 3))
+        self.assertTrue(submitted.waiting)  # nobody is there
         self.assertTrue(any("worker" in reason for reason in self.farm.explain(submitted)))
         first = self.process.worker()
         events, killed = [], False

@@ -8,7 +8,7 @@ import { flowChart } from './chart.js';
 import { Alerts } from './alerts.js';
 import { noJobs, noWorkers, welcome, workerCommand } from './welcome.js';
 import { preview } from './preview.js';
-import { doneOf, leftOf, share } from './job_state.js';
+import { doneOf, leftOf, lookOf, share } from './job_state.js';
 import { starMap } from './stars.js';
 import { Thumbs } from './thumbs.js';
 import { to } from './router.js';
@@ -157,7 +157,7 @@ class FarmView {
 
   drawJobs() {
     const open = inOrder(farm.jobs.values());
-    const running = open.filter((job) => job.state === 'running' && job.leased > 0).slice(0, MOST_NOW);
+    const running = open.filter((job) => lookOf(job) === 'running').slice(0, MOST_NOW);
     const rest = open.filter((job) => !running.includes(job));
     this.now.dataset.count = running.length;
     keyed(

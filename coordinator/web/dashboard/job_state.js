@@ -123,8 +123,8 @@ export function watchJob(id, listener) {
 /** How much of a job is rendered, 0..1. */
 export const share = (job) => (job.samples > 0 ? Math.min(1, job.samples_done / job.samples) : 0);
 
-/** What people call its state: a job that runs is 'waiting' while no worker has any of it. */
-export const lookOf = (job) => (job.state === 'running' && job.leased === 0 && share(job) < 1 ? 'waiting' : job.state);
+/** What people call its state: that of one that runs, and waits, is 'waiting'. */
+export const lookOf = (job) => (job.waiting ? 'waiting' : job.state);
 
 /**
  * Seconds in which somebody worked on it (of one that an older coordinator ended: from its beginning to its end); NaN of one that

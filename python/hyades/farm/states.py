@@ -53,7 +53,7 @@ class JobState:
     id: int
     name: str
     state: str
-    """running, paused, done, failed or cancelled."""
+    """running, paused, done, failed or cancelled; of one that is running `waiting` says whether somebody renders it."""
     owner: str = ""
     owner_proven: bool = False
     """Whether a token has shown who the owner is."""
@@ -90,6 +90,8 @@ class JobState:
     """In which it was worked on: waiting does not count."""
     frame_rate: float = 0.0
     """At which its frames are a video in real time; 0: not known."""
+    waiting: bool = False
+    """It is running and has something left to render, of which no worker has any: tables call its state waiting."""
 
     @property
     def ended(self) -> bool:

@@ -99,9 +99,10 @@ TEST_F(Client, WatchEndsWithTheJob) {
 
 TEST_F(Client, WatchSaysAtOnceWhyAJobWaitsAndOnce) {
   const std::string why = "it asks for workers with the tag 'gpu', and none is there";
-  const auto waiting = event(v1::JOB_STATE_RUNNING, 0, why);
-  farm_.events = {event(v1::JOB_STATE_RUNNING, 0), waiting, waiting,
-                  event(v1::JOB_STATE_DONE, 100)};
+  auto silent = event(v1::JOB_STATE_RUNNING, 0);
+  auto waiting = event(v1::JOB_STATE_RUNNING, 0, why);
+  for (auto* told : {&silent, &waiting}) told->mutable_job()->set_waiting(true);
+  farm_.events = {silent, waiting, waiting, event(v1::JOB_STATE_DONE, 100)};
   add_job("tri");
   const Ran ran = run(watch_command, at({"1"}));
   EXPECT_TRUE(has(ran.err, "tri    0 %  frame 1/2  waiting for its turn\n")) << ran.err;

@@ -49,7 +49,7 @@ TEST_F(Client, WaitingIsNotWhatAJobTook) {
 
 TEST_F(Client, AJobThatNobodyRendersWaits) {
   add_job("ocean");
-  farm_.jobs[0].set_samples(100);
+  farm_.jobs[0].set_waiting(true);
   farm_.jobs[0].set_seconds_left(77);
   for (const Command command : {jobs_command, status_command}) {
     const std::string text = run(command, command == jobs_command ? at({}) : at({"ocean"})).out;
@@ -57,7 +57,8 @@ TEST_F(Client, AJobThatNobodyRendersWaits) {
     EXPECT_FALSE(has(text, "1 min 17 s")) << text;
   }
   EXPECT_TRUE(has(run(priority_command, at({"ocean", "5"})).out, "is waiting, priority 5"));
-  farm_.jobs[0].set_leased(2);
+  EXPECT_EQ(json::parse(run(status_command, at({"ocean", "--json"})).out)["waiting"], true);
+  farm_.jobs[0].set_waiting(false);
   EXPECT_TRUE(has(run(jobs_command, at({})).out, "running"));
   EXPECT_TRUE(has(run(status_command, at({"ocean"})).out, "1 min 17 s left"));
 }

@@ -92,6 +92,7 @@ TEST(Top, ColoursOnlyWhereTheyAreWanted) {
 TEST(Top, AJobThatNobodyRendersWaitsAndSaysWhy) {
   FarmNow now = farm(2, 0);
   now.jobs[0].set_leased(2);
+  now.jobs[1].set_waiting(true);
   now.jobs[1].set_reason("it asks for workers with the tag 'gpu', and none is there");
   const std::string page = joined(top_page(now, "farm:7700", 160, 20, false));
   EXPECT_NE(page.find("running"), std::string::npos) << page;

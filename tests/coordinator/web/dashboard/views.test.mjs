@@ -66,7 +66,7 @@ test('what needs a person comes with the worst first', () => {
 });
 
 test('that nobody is there is not told of each job that waits', () => {
-  const waits = job(1, { reason: 'no worker is there that could take units', leased: 0, samples: 9, samples_done: 0 });
+  const waits = job(1, { reason: 'no worker is there that could take units', waiting: true, leased: 0, samples: 9 });
   const told = (info) => alertsOf({ info, workers: new Map(), jobs: new Map([[1, waits]]), me: {} }).length;
   assert.equal(told({ workers: 0 }), 0);
   assert.equal(told({ workers: 1 }), 1);
