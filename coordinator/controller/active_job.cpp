@@ -167,6 +167,15 @@ void ActiveJob::set_busy(bool busy, TimePoint now) {
   busy_since = busy ? now : TimePoint{};
 }
 
+void ActiveJob::account_is_stored(const StoredJob& row) {
+  core_ns_stored = row.core_ns;
+  busy_ns_stored = row.busy_ns;
+}
+
+bool ActiveJob::account_has_grown() const {
+  return stored.core_ns != core_ns_stored || stored.busy_ns != busy_ns_stored;
+}
+
 bool ActiveJob::is_worked_on(uint32_t leased) const {
   if (ending) return false;
   return leased > 0 || making_videos ||

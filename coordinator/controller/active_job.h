@@ -124,9 +124,10 @@ struct ActiveJob {
   bool storing_row HYADES_GUARDED_BY(state_lock) = false;
   std::string trouble HYADES_GUARDED_BY(state_lock);      ///< why its films cannot be stored
   std::string row_trouble HYADES_GUARDED_BY(state_lock);  ///< why `stored` cannot be stored
-  /// stored.core_ns as the store has it, and when that was looked at.
+  /// stored.core_ns and stored.busy_ns as the store has them, and when that was looked at.
   uint64_t core_ns_stored HYADES_GUARDED_BY(state_lock) = 0;
-  TimePoint core_stored HYADES_GUARDED_BY(state_lock);
+  uint64_t busy_ns_stored HYADES_GUARDED_BY(state_lock) = 0;
+  TimePoint account_stored HYADES_GUARDED_BY(state_lock);
   /// Workers whose reason for giving units back is in the log.
   std::set<WorkerId> gave_back HYADES_GUARDED_BY(state_lock);
   /// All frames are done, and the scheduler has let go of it; its videos are being made, or wait
@@ -139,6 +140,10 @@ struct ActiveJob {
   FrameNote& touch(int32_t frame) HYADES_REQUIRES(state_lock);
   /// Counts the time in which somebody has worked on it; from `now` on somebody does, or not.
   void set_busy(bool busy, TimePoint now) HYADES_REQUIRES(state_lock);
+  /// Notes that the store has the job's account as it is in `row`.
+  void account_is_stored(const StoredJob& row) HYADES_REQUIRES(state_lock);
+  /// Whether the store lacks something of the job's account.
+  bool account_has_grown() const HYADES_REQUIRES(state_lock);
   /// Whether anybody does something for it, where `leased` of its units are with workers.
   bool is_worked_on(uint32_t leased) const HYADES_REQUIRES(state_lock);
   /// Whether it runs, and has something left to be rendered of which nobody has any.

@@ -169,6 +169,7 @@ void Controller::stop() {
 
 Controller::~Controller() {
   stop();
+  const TimePoint stopped = std::chrono::steady_clock::now();
   parts_->clock.end();
   parts_->recovery.end();
   parts_->finisher.end();
@@ -177,6 +178,7 @@ Controller::~Controller() {
   parts_->disk.end();
   // Others leave it some tasks.
   parts_->context.background.end();
+  parts_->records.store_accounts(stopped);
   parts_->context.closing.end();
   parts_->jobs.clear();
 }

@@ -23,8 +23,8 @@ namespace {
 constexpr Duration kStorePatience = std::chrono::milliseconds(500);
 constexpr int kMostTries = 20;  ///< to store the last lines of a job that has ended
 constexpr Duration kLinesAgain = std::chrono::seconds(1);
-/// How far the account of a job may lag behind in the store.
-constexpr Duration kStoreCoreEvery = std::chrono::seconds(10);
+/// How far the account of a job may lag behind in the store: so much of it is lost in a crash.
+constexpr Duration kStoreAccountEvery = std::chrono::seconds(10);
 
 grpc::Status not_stored(const std::string& why) {
   return farm::retry_later(grpc::StatusCode::UNAVAILABLE,
@@ -93,7 +93,7 @@ bool JobRecords::store_now(uint64_t id) {
       active->touch();
       return false;
     }
-    active->core_ns_stored = job.core_ns;
+    active->account_is_stored(job);
     if (!active->row_trouble.empty()) active->touch();
     active->row_trouble.clear();
     now = queries_.describe(*active);
@@ -134,14 +134,28 @@ void JobRecords::look_after(TimePoint now, bool disk_full, const Scheduler& sche
     active->speed.note(active->samples_done, now, leased > 0);
     active->set_busy(active->is_worked_on(leased), now);
     if (active->ending || disk_full) continue;
-    if (active->stored.core_ns != active->core_ns_stored &&
-        now - active->core_stored >= kStoreCoreEvery) {
-      active->core_stored = now;
+    if (active->account_has_grown() && now - active->account_stored >= kStoreAccountEvery) {
+      active->account_stored = now;
       store(*active);
     }
     if (!active->log.begin_storing(now)) continue;
     context_.in_background(*active, [this, id = active->id] { return store_lines(id); });
   }
+}
+
+void JobRecords::store_accounts(TimePoint now) {
+  std::vector<StoredJob> rows;
+  {
+    const StateLock lock(context_.mutex);
+    for (const auto& [id, active] : jobs_.all()) {
+      // An end that is not stored yet comes again by itself after the next start.
+      if (active->ending) continue;
+      active->set_busy(false, now);
+      if (active->account_has_grown()) rows.push_back(active->stored);
+    }
+  }
+  // On a full disk what has come since the last time is lost, as in a crash.
+  for (const StoredJob& row : rows) (void)context_.store->update_job(row);
 }
 
 /// Where they cannot be stored they wait in memory, and hold up none of the job's tasks.

@@ -45,6 +45,9 @@ class JobRecords {
   /// Updates speeds, and has accounts and lines of logs stored; to be called from time to time.
   void look_after(TimePoint now, bool disk_full, const Scheduler& scheduler)
       HYADES_REQUIRES(state_lock);
+  /// Stores the accounts of open jobs as they are at `now`: nobody works on them any more. To be
+  /// called at the end, when no task is left that could store a job.
+  void store_accounts(TimePoint now) HYADES_EXCLUDES(state_lock);
 
  private:
   struct PendingReply {

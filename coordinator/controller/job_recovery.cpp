@@ -247,7 +247,7 @@ core::Status JobRecovery::recover(uint64_t id, JobRead read, const std::string& 
   now.reason.clear();  // why it waited
   active.stored = std::move(now);
   active.id = JobId{id};
-  active.core_ns_stored = active.stored.core_ns;
+  active.account_is_stored(active.stored);
   jobs_.note(active, v1::LOG_LEVEL_INFO, std::nullopt, {}, told);
   auto restored = restore_frames(active);
   if (!restored) return restored.error();

@@ -76,6 +76,9 @@ TEST(Steering, WaitingIsNotWhatAJobTook) {
   EXPECT_GE(busy, 0.08) << "eight units of 20 ms on two threads";
   std::this_thread::sleep_for(600ms);
   EXPECT_EQ(world.get(job).job().busy_seconds(), busy);
+  world.stop();
+  world.start();
+  EXPECT_NEAR(world.get(job).job().busy_seconds(), busy, 1e-6) << "an orderly end loses none of it";
   const ScriptedWorker worker(world.address, world.script(2));
   ASSERT_TRUE(world.wait_for(job, v1::JOB_STATE_DONE));
   const v1::Job over = world.get(job).job();
