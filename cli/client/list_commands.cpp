@@ -113,9 +113,11 @@ void print_status(const v1::GetJobResponse& response, bool all) {
     print_line("noise", core::format_noise(job.noise()) + aim);
   }
   if (job_look(job) == "running") {
-    print_line("now",
-               fmt::format("{} with workers, {}, {} left", core::counted(job.leased(), "unit"),
-                           core::format_rate(job.samples_per_second(), "samples"), left_text(job)));
+    std::string now =
+        fmt::format("{} with workers, {}", core::counted(job.leased(), "unit"),
+                    core::format_rate(job.samples_per_second(), "samples"));
+    if (job.seconds_left() >= 0) now += ", " + left_text(job) + " left";
+    print_line("now", now);
   }
   print_line("submitted", format_time(job.submitted_ms()));
   if (job.begun_ms() != 0) print_line("begun", format_time(job.begun_ms()));

@@ -265,8 +265,10 @@ v1::Job ActiveJob::describe(uint32_t leased) const {
   // Of one that nobody has in hand it is how fast it was once.
   if (speed.per_second() > 0 && leased > 0) {
     wire.set_samples_per_second(speed.per_second());
-    wire.set_seconds_left(static_cast<double>(samples - std::min(samples_done, samples)) /
-                          speed.per_second());
+    if (speed.tells_rest()) {
+      wire.set_seconds_left(static_cast<double>(samples - std::min(samples_done, samples)) /
+                            speed.per_second());
+    }
   }
   wire.set_waiting(is_waiting(leased));
   if (wire.waiting()) wire.set_reason(farm::wire_text(obstacle));

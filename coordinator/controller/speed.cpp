@@ -1,5 +1,6 @@
 #include "coordinator/controller/speed.h"
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 
@@ -7,6 +8,8 @@ namespace hyades::coordinator {
 namespace {
 
 constexpr double kSmoothing = 10.0;  // seconds
+constexpr double kEnough = 4.0;      // seconds, smoothed: five
+constexpr int kEnoughLumps = 4;
 
 }  // namespace
 
@@ -19,10 +22,13 @@ void Speed::note(uint64_t done, TimePoint now, bool busy) {
     const double keep = std::exp(-passed / kSmoothing);
     const double fresh = done > done_ ? static_cast<double>(done - done_) : 0.0;
     samples_ = keep * samples_ + fresh;
+    if (fresh > 0) lumps_ = std::min(lumps_ + 1, kEnoughLumps);
     seconds_ = keep * seconds_ + passed;
   }
   last_ = now;
   done_ = done;
 }
+
+bool Speed::tells_rest() const { return seconds_ >= kEnough && lumps_ >= kEnoughLumps; }
 
 }  // namespace hyades::coordinator

@@ -16,12 +16,16 @@ class Speed {
   void skip(uint64_t samples) { done_ += samples; }
   /// Samples per second; 0: not known yet.
   double per_second() const { return seconds_ > 0 ? samples_ / seconds_ : 0; }
+  /// Whether it was measured for long enough to tell how long the rest takes: in the first seconds
+  /// scenes are read, and what comes says little.
+  bool tells_rest() const;
 
  private:
   TimePoint last_;
   uint64_t done_ = 0;
   double samples_ = 0;  ///< lately, what is longer ago counting less
   double seconds_ = 0;  ///< that these took, counted alike
+  int lumps_ = 0;       ///< so often something has come, up to as often as is asked for
 };
 
 }  // namespace hyades::coordinator

@@ -40,6 +40,16 @@ TEST(Speed, OfTheFirstFilmsCountsTheTimeThatTheyTook) {
   EXPECT_NEAR(coming.speed().per_second(), 1000, 150);
 }
 
+TEST(Speed, OfTheFirstSecondsTellsNothingOfTheRest) {
+  Coming coming;
+  coming.go_on(4);
+  EXPECT_FALSE(coming.speed().tells_rest());
+  coming.go_on(60, false);
+  EXPECT_FALSE(coming.speed().tells_rest()) << "nobody has rendered any more of it";
+  coming.go_on(4);
+  EXPECT_TRUE(coming.speed().tells_rest()) << "that were four lumps in eight seconds";
+}
+
 TEST(Speed, IsWhatItWasAfterAPause) {
   Coming coming;
   coming.go_on(30);
