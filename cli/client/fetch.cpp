@@ -4,6 +4,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstddef>
 #include <cstdio>
@@ -23,6 +24,7 @@
 #include "core/base/io_reason.h"
 #include "core/base/posix_file.h"
 #include "core/base/printable.h"
+#include "core/base/text.h"
 #include "core/job/output_path.h"
 #include "farm/wire.h"
 
@@ -52,14 +54,8 @@ std::optional<uint64_t> hash_file(int fd, core::Sha256Stream& hash) {
 }
 
 bool is_complete(const std::string& path, uint64_t size, const std::string& sha256) {
-  const core::Descriptor file = core::open_file(path, O_RDONLY | O_NONBLOCK);
-  struct stat info {};
-  if (!file.valid() || ::fstat(file.get(), &info) != 0 || !S_ISREG(info.st_mode) ||
-      static_cast<uint64_t>(info.st_size) != size) {
-    return false;
-  }
-  core::Sha256Stream hash;
-  return hash_file(file.get(), hash) == size && core::to_hex(hash.digest()) == sha256;
+  std::error_code none;
+  return fs::file_size(path, none) == size && !none && sha256_of_file(path) == sha256;
 }
 
 /// The unfinished file: its name holds its digest, so that parts of two renderings never mix.
@@ -150,16 +146,37 @@ Outcome FetchTarget::check_name(const std::string& path) const {
   return std::nullopt;
 }
 
-Outcome FetchTarget::check(const std::string& path) const {
-  if (auto refused = check_name(path)) return refused;
+bool FetchTarget::may_write(const std::string& path) const {
+  const fs::path there = fs::path(folder) / path;
   std::error_code none;
-  if (!overwrite && !record.has(path) &&
-      fs::exists(fs::symlink_status(fs::path(folder) / path, none))) {
-    return Failure{kFailed, (fs::path(folder) / path).string() +
-                                " is there and was not written by hyades fetch (--overwrite "
-                                "replaces it, --output takes another folder)"};
+  const fs::file_status status = fs::symlink_status(there, none);
+  if (overwrite || !fs::exists(status)) return true;
+  return fs::is_regular_file(status) && record.has(job, path, sha256_of_file(there.string()));
+}
+
+Failure not_replaced(const std::vector<std::string>& paths, const std::string& folder) {
+  constexpr size_t kMostNamed = 10;
+  const size_t named = std::min(paths.size(), kMostNamed);
+  const bool one = paths.size() == 1;
+  return {kFailed,
+          fmt::format(
+              "{} there in {}, not written by a fetch of this job or changed since, and {}: {}{} "
+              "(--overwrite replaces {}, --output takes another folder)",
+              core::counted(paths.size(), "file") + (one ? " is" : " are"), folder,
+              one ? "stays" : "stay",
+              fmt::join(paths.begin(), paths.begin() + static_cast<ptrdiff_t>(named), ", "),
+              named < paths.size() ? ", ..." : "", one ? "it" : "them")};
+}
+
+std::string sha256_of_file(const std::string& path) {
+  const core::Descriptor file = core::open_file(path, O_RDONLY | O_NONBLOCK);
+  struct stat info {};
+  core::Sha256Stream hash;
+  if (!file.valid() || ::fstat(file.get(), &info) != 0 || !S_ISREG(info.st_mode) ||
+      !hash_file(file.get(), hash)) {
+    return {};
   }
-  return std::nullopt;
+  return core::to_hex(hash.digest());
 }
 
 Outcome fetch_file(FarmClient& client, uint64_t id, const v1::OutputFile& file, FetchTarget& into,
@@ -175,7 +192,10 @@ Outcome fetch_file(FarmClient& client, uint64_t id, const v1::OutputFile& file, 
     ++totals.present;
     return std::nullopt;
   }
-  if (auto refused = into.check(file.path())) return refused;
+  if (!into.may_write(file.path())) {
+    totals.refused.push_back(file.path());
+    return std::nullopt;
+  }
   std::error_code failed;
   fs::create_directories(target.parent_path(), failed);
   if (failed) {
@@ -200,7 +220,7 @@ Outcome fetch_file(FarmClient& client, uint64_t id, const v1::OutputFile& file, 
       if (failure) return failure;
     }
     if (part.offset() == file.size() && part.is_right()) {
-      if (auto failure = into.record.add(file.path())) return failure;
+      if (auto failure = into.note(file.path(), sha256)) return failure;
       if (auto failure = part.give_name()) return failure;
       ++totals.files;
       return std::nullopt;

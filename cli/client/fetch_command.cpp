@@ -45,8 +45,20 @@ struct FetchOptions {
   bool overwrite = false;
 };
 
-FetchTarget target_of(const FetchOptions& options) {
+/// What a job is called in FetchRecord: id and moment.
+Outcome name_job(FarmClient& client, uint64_t id, std::string& name) {
+  v1::GetJobRequest request;
+  request.set_job(id);
+  request.set_after(INT32_MAX);  // none of its frames
+  v1::GetJobResponse response;
+  if (auto failure = client.call(&v1::Jobs::Stub::Get, request, response)) return failure;
+  name = fmt::format("{} {}", id, response.job().submitted_ms());
+  return std::nullopt;
+}
+
+FetchTarget target_of(const FetchOptions& options, std::string job) {
   FetchTarget target(options.folder);
+  target.job = std::move(job);
   target.hidden = options.hidden;
   target.overwrite = options.overwrite;
   return target;
@@ -62,7 +74,7 @@ void declare(CLI::App& app, FetchOptions& options) {
                  "instead, this frame's film as it is now, also in mid-render (for 'hyades merge' "
                  "or any EXR viewer)");
   app.add_flag("--overwrite", options.overwrite,
-               "replace files that are there and that no fetch has written");
+               "replace files that are there, whoever has written them");
   app.add_flag("--hidden", options.hidden, "write files whose names begin with '.' or '-', too");
   app.add_flag("--list", options.list, "only tell which files there are");
   app.add_flag("-q,--quiet", options.quiet, "show no progress");
@@ -76,7 +88,9 @@ void declare(CLI::App& app, FetchOptions& options) {
       "gets its\n"
       "name, and those that are there already are left alone. Others that are there are not "
       "replaced,\n"
-      "but for what a fetch has written (.hyades/fetched in the folder has the list).\n"
+      "but for what a fetch of the same job has written and nobody has changed (.hyades/fetched in "
+      "the\n"
+      "folder has the list).\n"
       "exit status: 0 all that was asked for and is finished is here, 1 something failed, a frame "
       "of "
       "the job has\n"
@@ -93,7 +107,8 @@ Json output_to_json(const v1::OutputFile& file) {
 }
 
 /// Writes what there is of a frame's film to NAME.FRAME.film.exr.
-Outcome fetch_film(FarmClient& client, uint64_t id, const FetchOptions& options) {
+Outcome fetch_film(FarmClient& client, uint64_t id, const std::string& job,
+                   const FetchOptions& options) {
   v1::FilmHeader header;
   std::string bytes;
   TransferDisplay display("fetching", options.quiet);
@@ -108,8 +123,9 @@ Outcome fetch_film(FarmClient& client, uint64_t id, const FetchOptions& options)
   auto film = core::decode_film(std::as_bytes(std::span(bytes)), client.film_limits(bytes));
   if (!film) return Failure{kFailed, film.error().in("the film that came").message};
   const std::string name = fmt::format("{}.{:04}.film.exr", header.job_name(), *options.film);
-  FetchTarget target = target_of(options);
-  if (auto refused = target.check(name)) return refused;
+  FetchTarget target = target_of(options, job);
+  if (auto refused = target.check_name(name)) return refused;
+  if (!target.may_write(name)) return not_replaced({name}, options.folder);
   std::error_code failed;
   std::filesystem::create_directories(options.folder, failed);
   const std::string path = options.folder + "/" + name;
@@ -117,9 +133,9 @@ Outcome fetch_film(FarmClient& client, uint64_t id, const FetchOptions& options)
   if (auto stays = core::stays_in_folder(options.folder, path); !stays) {
     return Failure{kFailed, stays.error().message};
   }
-  if (auto failure = target.record.add(name)) return failure;
   auto written = core::write_film_exr(path, {std::move(*info), std::move(*film)});
   if (!written) return Failure{kFailed, written.error().message};
+  if (auto failure = target.note(name, sha256_of_file(path))) return failure;
   if (!options.quiet) std::fprintf(stderr, "wrote %s\n", core::printable(path).c_str());
   return std::nullopt;
 }
@@ -198,13 +214,13 @@ Outcome what_is_missing(const v1::GetJobResponse& response, const std::vector<in
 class FetchRun {
  public:
   /// `frames`: empty for all.
-  FetchRun(FarmClient& client, const FetchOptions& options, uint64_t id,
+  FetchRun(FarmClient& client, const FetchOptions& options, uint64_t id, std::string job,
            const std::vector<int32_t>& frames)
       : client_(client),
         options_(options),
         id_(id),
         frames_(frames),
-        target_(target_of(options)),
+        target_(target_of(options, std::move(job))),
         display_("fetching", options.quiet || options.list) {}
 
   Outcome run() {
@@ -233,6 +249,9 @@ class FetchRun {
     if (!options_.follow) seen_.clear();  // they were counted, not fetched
     for (size_t i = 0; i < files.size() && !failure; ++i) failure = take(files[i]);
     display_.clear();
+    if (!failure && !totals_.refused.empty()) {
+      failure = not_replaced(totals_.refused, options_.folder);
+    }
     return failure;
   }
 
@@ -302,15 +321,17 @@ int fetch_command(int argc, char** argv) {
   uint64_t id = 0;
   if (auto failure = find_job(*client, options.job, Namesakes::newest, id))
     return app.report(*failure);
+  std::string name;
+  if (auto failure = name_job(*client, id, name)) return app.report(*failure);
   if (options.film) {
-    const Outcome failure = fetch_film(*client, id, options);
+    const Outcome failure = fetch_film(*client, id, name, options);
     return failure ? app.report(*failure) : kDone;
   }
   std::vector<int32_t> frames;
   if (auto failure = select_frames(*client, id, options.frames, frames)) {
     return app.report(*failure);
   }
-  FetchRun run(*client, options, id, frames);
+  FetchRun run(*client, options, id, std::move(name), frames);
   const Outcome failure = run.run();
   run.print();
   if (failure) return app.report(*failure);

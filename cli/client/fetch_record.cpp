@@ -28,24 +28,25 @@ FetchRecord::FetchRecord(std::string folder) : file_(std::move(folder) + "/.hyad
   if (!is_plain_ || file != fs::file_type::regular) return;
   std::ifstream lines(file_);
   for (std::string line; std::getline(lines, line);) {
-    if (!lines.eof()) paths_.insert(line);  // the last one may have been cut short
+    if (!lines.eof()) lines_.insert(line);  // the last one may have been cut short
   }
 }
 
-Outcome FetchRecord::add(const std::string& path) {
-  if (has(path)) return std::nullopt;
+Outcome FetchRecord::add(const std::string& job, const std::string& path,
+                         const std::string& sha256) {
+  if (has(job, path, sha256)) return std::nullopt;
   if (!is_plain_) {
     return Failure{
         kFailed, file_ + ": no plain file in a plain folder, expected what hyades has made there"};
   }
   // Beside where `hyades render` keeps its films.
   ::mkdir(file_.substr(0, file_.rfind('/')).c_str(), 0777);
-  const std::string line = path + "\n";
+  const std::string line = line_of(job, path, sha256) + "\n";
   const core::Descriptor file = core::open_file(file_, O_WRONLY | O_CREAT | O_APPEND | O_NOFOLLOW);
   if (!file.valid() || !core::write_all(file.get(), std::as_bytes(std::span(line)))) {
     return Failure{kFailed, "cannot write " + file_ + ": " + core::io_reason(errno)};
   }
-  paths_.insert(path);
+  lines_.insert(line.substr(0, line.size() - 1));
   return std::nullopt;
 }
 

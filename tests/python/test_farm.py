@@ -73,7 +73,8 @@ class WholeFarm(unittest.TestCase):
         self.farm.fetch(submitted, self.folder / "there", on_bytes=came.append)
         self.assertEqual(came, [])
         listed = (self.folder / "there/.hyades/fetched").read_text().splitlines()
-        self.assertEqual(sorted(listed), sorted(file.id for file in self.farm.outputs(submitted)))
+        name = f"{submitted.id} {submitted.submitted_ms}"
+        self.assertEqual(sorted(listed), sorted(f"{f.sha256} {name} {f.id}" for f in self.farm.outputs(submitted)))
 
     def test_files_are_sent_once_and_submissions_made_once(self) -> None:
         sent = []

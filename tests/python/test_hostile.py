@@ -44,12 +44,14 @@ def deep_folder(folder: pathlib.Path) -> pathlib.Path:
 class Serves:
     """Outputs of a job: what is listed, and the bytes that come."""
 
-    def __init__(self, *listed: dict, content: bytes = CONTENT, cut: int = 0) -> None:
-        self.listed, self.content, self.cut = list(listed), content, cut
+    def __init__(self, *listed: dict, content: bytes = CONTENT, cut: int = 0, submitted_ms: int = 5) -> None:
+        self.listed, self.content, self.cut, self.submitted_ms = list(listed), content, cut, submitted_ms
 
     def __call__(self, request: Request):
         if urlsplit(request.path).path.endswith("/outputs"):
             return ok({"outputs": self.listed, "after": 1, "more": False})
+        if urlsplit(request.path).path == "/api/v1/jobs/1":
+            return ok({"job": {"id": 1, "submitted_ms": self.submitted_ms}})
         begin = int((request.headers.get("Range") or "bytes=0-").removeprefix("bytes=").removesuffix("-"))
         rest = self.content[begin:]
         if self.cut and begin == 0:  # promised whole, sent in part
@@ -99,9 +101,15 @@ class Fetch(unittest.TestCase):
         self.assertEqual(mine.read_bytes(), b"mine")
         self.fetch(Serves(output("mine.exr")), overwrite=True)
         self.assertEqual(mine.read_bytes(), CONTENT)
-        # What a fetch has written another one may replace.
+        # What a fetch has written another one of the same job may replace, unless somebody has changed it.
         self.fetch(Serves(output("mine.exr", b"new"), content=b"new"))
         self.assertEqual(mine.read_bytes(), b"new")
+        with self.assertRaises(hyades.FileRefused):
+            self.fetch(Serves(output("mine.exr"), submitted_ms=6))
+        mine.write_bytes(b"edited")
+        with self.assertRaises(hyades.FileRefused):
+            self.fetch(Serves(output("mine.exr")))
+        self.assertEqual(mine.read_bytes(), b"edited")
         # A link that leads nowhere is something that is there, too.
         os.symlink(self.scratch / "elsewhere", self.folder / "link.exr")
         with self.assertRaises(hyades.FileRefused):
@@ -196,7 +204,8 @@ class Fetch(unittest.TestCase):
     def test_a_file_that_was_cut_off_goes_on(self) -> None:
         (path,) = self.fetch(Serves(output("a.exr"), cut=1000))
         self.assertEqual(path.read_bytes(), CONTENT)
-        self.assertEqual(self.requests[-1].headers["Range"], "bytes=1000-")
+        pieces = [request for request in self.requests if "/outputs/" in request.path]
+        self.assertEqual(pieces[-1].headers["Range"], "bytes=1000-")
 
     def test_a_damaged_part_of_an_earlier_run_is_begun_anew(self) -> None:
         part = self.folder / f".a.exr.{output('a.exr')['sha256'][:16]}.part"

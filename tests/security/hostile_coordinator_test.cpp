@@ -147,7 +147,7 @@ TEST_F(HostileCoordinator, ReplacesNoFileThatFetchHasNotWritten) {
   farm_.outputs = {{"thesis.tex", "evil"}};
   const Ran ran = run(fetch_command, at({"a", "--output", out}));
   EXPECT_EQ(ran.status, kFailed);
-  EXPECT_TRUE(has(ran.err, "was not written by hyades fetch (--overwrite replaces it")) << ran.err;
+  EXPECT_TRUE(has(ran.err, "thesis.tex (--overwrite replaces it")) << ran.err;
   EXPECT_EQ(read_file(out + "/thesis.tex"), "mine");
 
   // What was fetched is replaced by a later rendering, also by a later run.

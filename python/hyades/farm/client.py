@@ -199,7 +199,8 @@ class Farm:
         until the job has ended. Files that are there are not brought again; unfinished ones go on.
 
         FileRefused: a name leaves the folder or is hidden (`hidden` allows that), a file is there
-        that no fetch has written (`overwrite` replaces it), or the bytes are not those promised.
+        that no fetch of this job has written, or that was changed since (`overwrite` replaces it), or
+        the bytes are not those promised.
         """
         fetcher = Fetcher(self._http, _id(job), Path(folder), hidden, overwrite, on_bytes)
         here: dict[str, Path] = {}

@@ -11,6 +11,7 @@ from urllib.parse import quote
 
 from ..errors import FarmError, FileRefused
 from ..files import stays_in_folder
+from .answers import part as answered
 from .http import Http
 from .names import check_name
 from .states import OutputFile
@@ -20,8 +21,9 @@ _NO_LINKS = getattr(os, "O_NOFOLLOW", 0) | getattr(os, "O_BINARY", 0)
 
 
 class FetchRecord:
-    """Which files of a folder a fetch has written, in its file .hyades/fetched: without it a hostile
-    coordinator, which names the files, could have others of the folder replaced."""
+    """Which files of a folder a fetch has written, of which job and with which bytes, in its file
+    .hyades/fetched: without it a hostile coordinator, which names the files, could have others of
+    the folder replaced, and one job's pictures could replace another's."""
 
     def __init__(self, folder: Path) -> None:
         self._file = folder / ".hyades/fetched"
@@ -30,20 +32,22 @@ class FetchRecord:
         if self._file.parent.is_symlink() or (os.path.lexists(self._file) and not is_plain):
             raise FileRefused(f"{self._file}: expected what hyades has made there, no link and no pipe")
         text = self._file.read_text(encoding="utf-8", errors="replace") if self._file.exists() else ""
-        self._paths = set(text.split("\n")[:-1])  # the last line may have been cut short
+        self._lines = set(text.split("\n")[:-1])  # the last line may have been cut short
 
-    def has(self, path: str) -> bool:
-        return path in self._paths
+    def has(self, job: str, path: str, sha256: str) -> bool:
+        """Whether a fetch of the job, called by id and moment, has written these bytes there."""
+        return f"{sha256} {job} {path}" in self._lines
 
-    def add(self, path: str) -> None:
+    def add(self, job: str, path: str, sha256: str) -> None:
         """Before the file gets its name."""
-        if self.has(path):
+        if self.has(job, path, sha256):
             return
+        line = f"{sha256} {job} {path}"
         self._file.parent.mkdir(exist_ok=True)
         file = os.open(self._file, os.O_WRONLY | os.O_CREAT | os.O_APPEND | _NO_LINKS, 0o666)
         with os.fdopen(file, "ab") as lines:
-            lines.write(path.encode() + b"\n")
-        self._paths.add(path)
+            lines.write(line.encode() + b"\n")
+        self._lines.add(line)
 
 
 class Fetcher:
@@ -65,6 +69,7 @@ class Fetcher:
         self._overwrite = overwrite
         self._on_bytes = on_bytes
         self._record = FetchRecord(folder)
+        self._name = ""
 
     def fetch(self, file: OutputFile) -> Path:
         """The file's path, once it is there whole. FileRefused where it must not be written."""
@@ -77,19 +82,34 @@ class Fetcher:
             raise FileRefused(f"{target}: a link leads it out of the folder that is written to")
         if _is_complete(target, file):
             return target
-        if not self._overwrite and not self._record.has(file.id) and os.path.lexists(target):
+        if not self._overwrite and os.path.lexists(target) and not self._is_own(file.id, target):
             raise FileRefused(
-                f"{target} is there and was not written by a fetch (overwrite=True replaces it, another folder helps too)"
+                f"{target} is there, and was not written by a fetch of this job or was changed since "
+                "(overwrite=True replaces it, another folder helps too)"
             )
         target.parent.mkdir(parents=True, exist_ok=True)
         part = target.parent / f".{target.name[:200]}.{file.sha256[:16]}.part"
         # The second round is for a part that an earlier run left damaged.
         for again in (False, True):
             if self._bring(file, part, anew=again):
-                self._record.add(file.id)
+                self._record.add(self._job_name(), file.id, file.sha256)
                 os.replace(part, target)
                 return target
         raise FileRefused(f"{file.id}: what the coordinator sends has not the SHA-256 that it promised")
+
+    def _is_own(self, path: str, target: Path) -> bool:
+        """Whether a file is as a fetch of this job has left it."""
+        if target.is_symlink() or not target.is_file():
+            return False
+        with open(target, "rb") as data:
+            return self._record.has(self._job_name(), path, hashlib.file_digest(data, "sha256").hexdigest())
+
+    def _job_name(self) -> str:
+        """Id and moment: other coordinators number their jobs alike."""
+        if not self._name:
+            answer = self._http.call("GET", f"/api/v1/jobs/{self._job}", query={"after": 2147483646})
+            self._name = f"{self._job} {answered(answered(answer, 'job', dict), 'submitted_ms', int)}"
+        return self._name
 
     def _bring(self, file: OutputFile, part: Path, anew: bool) -> bool:
         """Fills the part; whether its bytes are right."""

@@ -21,8 +21,8 @@ TEST_F(Client, FetchChecksAndGoesOn) {
   run(fetch_command, at({"a", "--output", out}));
   EXPECT_EQ(farm_.fetched, 10'003U);  // all is there
 
-  // Truncated or changed files are brought again; what an earlier run has is used.
-  fs::resize_file(out + "/a.0001.exr", 100);
+  // What was there is brought again; what an earlier run has is used.
+  fs::remove(out + "/a.0001.exr");
   const std::string sha = core::to_hex(core::sha256(std::string_view(farm_.outputs["a.0001.exr"])));
   const std::string part = out + "/.a.0001.exr." + sha.substr(0, 16) + ".part";
   std::ofstream(part) << std::string(4'000, 'x');
@@ -38,6 +38,44 @@ TEST_F(Client, FetchChecksAndGoesOn) {
   EXPECT_EQ(read_file(out + "/a.0001.exr"), farm_.outputs["a.0001.exr"]);
   EXPECT_EQ(json::parse(run(fetch_command, at({"a", "--list", "--json"})).out)[1]["id"],
             "passes/a.0002.exr");
+}
+
+TEST_F(Client, FetchReplacesOnlyWhatItHasWrittenOfTheSameJob) {
+  add_job("a", v1::JOB_STATE_DONE);
+  add_job("b", v1::JOB_STATE_DONE);
+  farm_.outputs["a.exr"] = "one";
+  farm_.outputs["b.exr"] = "two";
+  const std::string out = folder_.file("out");
+  const auto fetch = [&](const std::string& job, const std::vector<std::string>& more = {}) {
+    std::vector<std::string> words{job, "--output", out};
+    words.insert(words.end(), more.begin(), more.end());
+    return run(fetch_command, at(words));
+  };
+  ASSERT_EQ(fetch("1").status, kDone);
+  farm_.outputs["a.exr"] = "once more";  // after a retry
+  EXPECT_EQ(fetch("1").status, kDone);
+  EXPECT_EQ(read_file(out + "/a.exr"), "once more");
+
+  std::ofstream(out + "/a.exr") << "edited";
+  farm_.outputs["b.exr"] = "new";
+  Ran ran = fetch("1");
+  EXPECT_EQ(ran.status, kFailed);
+  EXPECT_TRUE(has(ran.err, "1 file is there")) << ran.err;
+  EXPECT_TRUE(has(ran.err, "a.exr (--overwrite replaces it")) << ran.err;
+  EXPECT_EQ(read_file(out + "/a.exr"), "edited");
+  EXPECT_EQ(read_file(out + "/b.exr"), "new") << "the others come";
+
+  farm_.outputs = {{"a.exr", "another's"}, {"b.exr", "another's"}};
+  ran = fetch("2");
+  EXPECT_EQ(ran.status, kFailed);
+  EXPECT_TRUE(has(ran.err, "2 files are there")) << ran.err;
+  EXPECT_TRUE(has(ran.err, "a.exr, b.exr (--overwrite")) << ran.err;
+  EXPECT_EQ(read_file(out + "/b.exr"), "new");
+  // Another coordinator's first job is not this one's.
+  farm_.jobs[0].set_submitted_ms(5);
+  EXPECT_EQ(fetch("1").status, kFailed);
+  EXPECT_EQ(fetch("2", {"--overwrite"}).status, kDone);
+  EXPECT_EQ(read_file(out + "/a.exr"), "another's");
 }
 
 TEST_F(Client, FetchSaysWhyThereIsNothing) {
