@@ -32,6 +32,7 @@ std::string left_text(const v1::Job& job) {
 }
 
 constexpr const char* kSuspect = "in doubt: a divergent worker had a part in it";
+constexpr const char* kBlack = "black all over: no light reaches what the camera sees";
 
 /// How long the job has been rendered; "-" of one that nobody has begun.
 std::string taken_text(const v1::Job& job) {
@@ -74,8 +75,9 @@ void print_frames(const v1::GetJobResponse& response, bool all) {
       {"frame", "state", "samples", "class", "restarts", "reason"}};
   size_t more = 0;
   for (const v1::Frame& frame : response.frames()) {
-    const bool telling = frame.doubtful() || (frame.state() != v1::FRAME_STATE_WAITING &&
-                                              frame.state() != v1::FRAME_STATE_DONE);
+    const bool telling =
+        frame.doubtful() || frame.black() ||
+        (frame.state() != v1::FRAME_STATE_WAITING && frame.state() != v1::FRAME_STATE_DONE);
     if (!all && !telling) continue;
     if (!all && rows.size() > kMostFrames) {
       ++more;
@@ -84,7 +86,9 @@ void print_frames(const v1::GetJobResponse& response, bool all) {
     rows.push_back({std::to_string(frame.frame()), state_name(frame.state()),
                     percent(frame.samples_done(), frame.samples()),
                     frame.worker_class().substr(0, 12), std::to_string(frame.restarts()),
-                    frame.doubtful() ? kSuspect : frame.reason()});
+                    frame.doubtful() ? kSuspect
+                    : frame.black()  ? kBlack
+                                     : frame.reason()});
   }
   if (rows.size() == 1) return;
   std::printf("\n");
@@ -113,9 +117,8 @@ void print_status(const v1::GetJobResponse& response, bool all) {
     print_line("noise", core::format_noise(job.noise()) + aim);
   }
   if (job_look(job) == "running") {
-    std::string now =
-        fmt::format("{} with workers, {}", core::counted(job.leased(), "unit"),
-                    core::format_rate(job.samples_per_second(), "samples"));
+    std::string now = fmt::format("{} with workers, {}", core::counted(job.leased(), "unit"),
+                                  core::format_rate(job.samples_per_second(), "samples"));
     if (job.seconds_left() >= 0) now += ", " + left_text(job) + " left";
     print_line("now", now);
   }

@@ -162,16 +162,12 @@ Result<v1::SubmitRequest> make_request(const farm::JobPackage& package,
 
 /// Several lines: every complaint about the job, with its path as it can be shown.
 Outcome submit(FarmClient& client, const farm::JobPackage& package, core::JobFiles& files,
-               const v1::SubmitRequest& request, bool quiet, v1::Job& job) {
+               const v1::SubmitRequest& request, bool quiet, v1::SubmitResponse& response) {
   for (int round = 1;; ++round) {
     if (auto failure = upload_missing(client, package, files, quiet)) return failure;
-    v1::SubmitResponse response;
     const auto failure =
         client.call(&v1::Jobs::Stub::Submit, request, response, FarmClient::kLongCall);
-    if (!failure) {
-      job = response.job();
-      return std::nullopt;
-    }
+    if (!failure) return std::nullopt;
     // Files that were there may have been removed since, with the last job that had them.
     if (failure->missing.empty() || round == kMostUploads) return failure;
   }
@@ -236,10 +232,14 @@ int submit_command(int argc, char** argv) {
   if (!options.quiet && !blend) tell_files_elsewhere(*package, options.path);
   const auto client = app.connect();
   if (!client) return kBadArguments;
-  v1::Job job;
-  if (auto failure = submit(*client, *package, door, *request, options.quiet, job)) {
+  v1::SubmitResponse taken;
+  if (auto failure = submit(*client, *package, door, *request, options.quiet, taken)) {
     return app.report(*failure);
   }
+  for (const std::string& warning : taken.warnings()) {
+    std::fprintf(stderr, "warning: %s\n", core::printable(warning).c_str());
+  }
+  v1::Job job = taken.job();
   if (!options.json) {
     std::printf("job %lu: %s, %s\n", job.id(), core::printable(job.name()).c_str(),
                 core::counted(job.frames(), "frame").c_str());

@@ -288,6 +288,7 @@ v1::Frame ActiveJob::describe_frame(int32_t number, const FrameNote& note) const
   wire.set_worker_class(note.worker_class);
   wire.set_restarts(note.restarts);
   if (note.noise) wire.set_noise(*note.noise);
+  wire.set_black(black.contains(number));
   return wire;
 }
 

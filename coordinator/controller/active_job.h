@@ -109,6 +109,7 @@ struct ActiveJob {
   /// Frames that may be in work: all that are rendered or finished, and a few others.
   std::set<int32_t> in_work HYADES_GUARDED_BY(state_lock);
   std::set<int32_t> failed HYADES_GUARDED_BY(state_lock);  ///< frames that have failed
+  std::set<int32_t> black HYADES_GUARDED_BY(state_lock);   ///< done ones that no light has reached
   FailureReasons reasons HYADES_GUARDED_BY(state_lock);    ///< why these have
   Speed speed HYADES_GUARDED_BY(state_lock);
   /// Since when it has been worked on without a pause that is not in stored.busy_ns; none: nobody
@@ -158,7 +159,7 @@ struct ActiveJob {
   /// The job as the wire shows it; `leased`: its units that workers have.
   v1::Job describe(uint32_t leased) const HYADES_REQUIRES(state_lock);
   /// A frame of it as the wire shows it.
-  v1::Frame describe_frame(int32_t frame, const FrameNote& note) const;
+  v1::Frame describe_frame(int32_t frame, const FrameNote& note) const HYADES_REQUIRES(state_lock);
 
  private:
   static uint64_t next_life();

@@ -87,6 +87,9 @@ grpc::Status Diagnosis::explain(uint64_t id, v1::ExplainResponse& response) {
         frame);
   }
   reasons.end_kind("frames are in doubt");
+  const auto black = context_.store->black(id, UINT32_MAX);
+  if (!black) return farm::unavailable(black.error());
+  explain_black(*black, reasons);
   return grpc::Status::OK;
 }
 
@@ -96,6 +99,7 @@ bool Diagnosis::explain_open(uint64_t id, v1::ExplainResponse& response) {
   if (active == nullptr) return false;
   Reasons reasons(response);
   explain_state(*active, reasons);
+  explain_black(active->black, reasons);
   if (active->making_videos) {
     reasons.say(videos_.is_making(active->id)
                     ? "all frames are done, and its videos are being made of them"
@@ -145,6 +149,19 @@ void Diagnosis::note_obstacles() {
     active->obstacle = std::move(obstacle);
     active->touch();
   }
+}
+
+/// Frames, in order, that no light has reached.
+template <class Frames>
+void Diagnosis::explain_black(const Frames& frames, Reasons& reasons) {
+  size_t told = 0;
+  for (const int32_t frame : frames) {
+    if (reasons.is_full()) break;
+    reasons.say_one("frame {} is black all over: no light reaches what the camera sees", frame);
+    ++told;
+  }
+  reasons.add(frames.size() - told);
+  reasons.end_kind("frames are black all over");
 }
 
 void Diagnosis::explain_state(const ActiveJob& active, Reasons& reasons) const {

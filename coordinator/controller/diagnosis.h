@@ -40,6 +40,8 @@ class Diagnosis {
 
  private:
   class Reasons;
+  template <class Frames>
+  static void explain_black(const Frames& frames, Reasons& reasons);
   void explain_state(const ActiveJob& active, Reasons& reasons) const HYADES_REQUIRES(state_lock);
   bool explain_workers(const ActiveJob& active, bool anybody, Reasons& reasons) const
       HYADES_REQUIRES(state_lock);

@@ -16,6 +16,7 @@
 #include "core/base/failpoint.h"
 #include "core/base/fp_mode.h"
 #include "core/base/wall_clock.h"
+#include "core/film/black.h"
 #include "core/job/film_file.h"
 
 namespace hyades::coordinator {
@@ -84,6 +85,7 @@ bool FrameFinisher::finish(Completed& completed) {
   // Not in the tasks that wait: what a job has in memory goes with it.
   const std::shared_ptr<const core::Film> film = begin(completed, spec, owner, over);
   if (!film) return !completed.failure;
+  over.black = core::is_black(*film);
   auto document = context_.documents.read_stored(spec, kReadingPatience, owner);
   if (!document) return false;  // it is tried again
   const int64_t begun_us = core::wall_us();
@@ -117,6 +119,11 @@ bool FrameFinisher::finish(Completed& completed) {
       std::chrono::microseconds(std::max<int64_t>(core::wall_us() - begun_us, 0)));
   timelines_.note(static_cast<uint64_t>(completed.job),
                   {v1::TimelineStep::KIND_FINISH, {}, 0, all, begun_us, core::wall_us()});
+  if (ActiveJob* still = jobs_.find(completed.job); still != nullptr && over.black) {
+    still->black.insert(completed.frame);
+    jobs_.note(*still, v1::LOG_LEVEL_WARNING, completed.frame, {},
+               "is black all over: no light reaches what the camera sees");
+  }
   turn.tell(FinishDone{completed.job, completed.frame});
   return true;
 }

@@ -12,7 +12,6 @@
 #include "coordinator/meters/meters.h"
 #include "core/base/text.h"
 #include "core/base/wall_clock.h"
-#include "core/film/black.h"
 #include "farm/wire.h"
 
 namespace hyades::coordinator {
@@ -167,6 +166,7 @@ void FrameProgress::reopened(ActiveJob& active, const FrameReopened& action) {
   const int32_t frame = action.frame;
   active.complete.erase(frame);
   active.touch(frame).state = v1::FRAME_STATE_RENDERING;
+  active.black.erase(frame);
   jobs_.note(active, v1::LOG_LEVEL_WARNING, frame, {},
              "is not done: a unit that was rendered differently twice is rendered once more");
   // Should this be lost, or come after the frame is done again, it is rendered again or stays.
@@ -185,14 +185,9 @@ void FrameProgress::finish(ActiveJob& active, const FinishFrame& finish) {
     if (!film_store->fetch(finish.frame)) return;
     measure_noise(finish.job, finish.frame);
     const std::shared_ptr<const core::Film> film = film_of(finish.job, finish.frame);
-    const bool black = film != nullptr && core::is_black(*film);
     const StateLock again(context_.mutex);
     ActiveJob* still = jobs_.find(finish.job);
     if (still == nullptr) return;
-    if (black) {
-      jobs_.note(*still, v1::LOG_LEVEL_WARNING, finish.frame, {},
-                 "is black all over: no light reaches what the camera sees");
-    }
     still->complete[finish.frame] = film;
     hand_over(*still, finish);
   });
@@ -241,6 +236,7 @@ void FrameProgress::restarted(ActiveJob& active, const FrameRestarted& action) {
   noted.state = v1::FRAME_STATE_WAITING;
   active.in_work.erase(frame);
   active.failed.erase(frame);
+  active.black.erase(frame);
   noted.reason.reset();
   noted.worker_class.clear();
   noted.noise.reset();

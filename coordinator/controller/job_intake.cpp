@@ -22,6 +22,7 @@
 #include "core/base/printable.h"
 #include "core/base/text.h"
 #include "core/base/wall_clock.h"
+#include "core/job/darkness.h"
 #include "farm/tags.h"
 #include "farm/wire.h"
 #include "farm/wire_status.h"
@@ -129,6 +130,7 @@ grpc::Status JobIntake::submit(const v1::SubmitRequest& request, bool owner_prov
         context_.documents.read(request.spec(), kReadingPatience, request.owner());
     if (!document) return std::nullopt;
     if (!*document) return document->error();
+    if (!core::may_give_light((**document)->job)) response.add_warnings(core::kNothingGivesLight);
     return make_active_job(new_row(request, *options, owner_proven), request.spec(), ***document,
                            *context_.assets, context_.options.film_memory);
   }();
@@ -158,12 +160,16 @@ grpc::Status JobIntake::take_in(std::unique_ptr<ActiveJob> active, v1::SubmitRes
     jobs_.note(*active, v1::LOG_LEVEL_INFO, std::nullopt, {},
                fmt::format("submitted by {}: {}", owner.empty() ? "nobody in particular" : owner,
                            core::counted(active->numbers.size(), "frame")));
+    for (const std::string& warning : response.warnings()) {
+      jobs_.note(*active, v1::LOG_LEVEL_WARNING, std::nullopt, {}, warning);
+    }
     if (core::Status started = recovery_.start(std::move(active), {}); !started) {
       // Nothing was promised yet.
       (void)context_.store->remove_job(added->id);
       return farm::unavailable(started.error());
     }
   }
+  if (added->existed) response.clear_warnings();
   return answer_with(added->id, added->existed, response);
 }
 

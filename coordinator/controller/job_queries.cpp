@@ -63,6 +63,7 @@ v1::Frame describe_over(const StoredFrame& frame, const StoredJob& job) {
   wire.set_worker_class(frame.worker_class);
   wire.set_restarts(frame.restarts);
   wire.set_doubtful(frame.doubtful);
+  wire.set_black(frame.black);
   return wire;
 }
 

@@ -301,6 +301,7 @@ core::Result<RestoredJob> JobRecovery::restore_frames(ActiveJob& active) {
       restored.finished.push_back(frame.frame);
       active.stored.preview = frame.frame;
       note.state = v1::FRAME_STATE_DONE;
+      if (frame.black) active.black.insert(frame.frame);
       note.samples_done = active.samples_per_frame;
       active.samples_done += note.samples_done;
     } else {

@@ -14,7 +14,7 @@ namespace hyades::coordinator {
 core::Result<std::vector<StoredFrame>> read_frames(sqlite3* db, uint64_t job,
                                                    std::optional<int32_t> after, uint32_t limit) {
   Query rows(db,
-             "SELECT frame, done, reason, class, restarts, doubtful FROM frames "
+             "SELECT frame, done, reason, class, restarts, doubtful, black FROM frames "
              "WHERE job = ?1 AND frame > ?2" +
                  kJobIsThere + "ORDER BY frame LIMIT ?3");
   rows.bind(number(job)).bind(after ? int64_t{*after} : INT64_MIN).bind(int64_t{limit});
@@ -27,13 +27,18 @@ core::Result<std::vector<StoredFrame>> read_frames(sqlite3* db, uint64_t job,
     frame.worker_class = rows.bytes(3);
     frame.restarts = static_cast<uint32_t>(rows.integer(4));
     frame.doubtful = rows.integer(5) != 0;
+    frame.black = rows.integer(6) != 0;
   }
   if (core::Status status = rows.status(); !status) return status.error();
   return frames;
 }
 
-core::Result<std::vector<int32_t>> read_doubtful(sqlite3* db, uint64_t job, uint32_t limit) {
-  Query rows(db, "SELECT frame FROM frames WHERE job = ?1 AND doubtful" + kJobIsThere +
+namespace {
+
+/// Frames of which the column `mark` says something, in order, at most `limit`.
+core::Result<std::vector<int32_t>> read_marked(sqlite3* db, const std::string& mark, uint64_t job,
+                                               uint32_t limit) {
+  Query rows(db, "SELECT frame FROM frames WHERE job = ?1 AND " + mark + kJobIsThere +
                      "ORDER BY frame LIMIT ?2");
   rows.bind(number(job)).bind(int64_t{limit});
   std::vector<int32_t> frames;
@@ -42,17 +47,28 @@ core::Result<std::vector<int32_t>> read_doubtful(sqlite3* db, uint64_t job, uint
   return frames;
 }
 
+}  // namespace
+
+core::Result<std::vector<int32_t>> read_doubtful(sqlite3* db, uint64_t job, uint32_t limit) {
+  return read_marked(db, "doubtful", job, limit);
+}
+
+core::Result<std::vector<int32_t>> read_black(sqlite3* db, uint64_t job, uint32_t limit) {
+  return read_marked(db, "black", job, limit);
+}
+
 core::Status put_frame(sqlite3* db, uint64_t job, const StoredFrame& frame) {
   if (core::Status gone = delete_frame(db, job, frame.frame); !gone) return gone;
   const core::Status done = Query(db,
-                                  "INSERT INTO frames (job, frame, done, reason, class, restarts) "
-                                  "VALUES (?, ?, ?, ?, ?, ?)")
+                                  "INSERT INTO frames (job, frame, done, reason, class, restarts, "
+                                  "black) VALUES (?, ?, ?, ?, ?, ?, ?)")
                                 .bind(number(job))
                                 .bind(int64_t{frame.frame})
                                 .bind(int64_t{frame.done})
                                 .bind(frame.reason)
                                 .bind(frame.worker_class)
                                 .bind(int64_t{frame.restarts})
+                                .bind(int64_t{frame.black})
                                 .run();
   return done ? store_contributors(db, job, frame) : done;
 }

@@ -17,6 +17,8 @@ core::Result<std::vector<StoredFrame>> read_frames(sqlite3* db, uint64_t job,
                                                    std::optional<int32_t> after, uint32_t limit);
 /// JobStore::doubtful().
 core::Result<std::vector<int32_t>> read_doubtful(sqlite3* db, uint64_t job, uint32_t limit);
+/// JobStore::black().
+core::Result<std::vector<int32_t>> read_black(sqlite3* db, uint64_t job, uint32_t limit);
 
 /// Replaces what is known of the frame, but for its outputs, of which it has none then; within a
 /// transaction.

@@ -62,6 +62,7 @@ struct StoredFrame {
   std::vector<std::string> parts{};
   uint64_t moment = 0;    ///< when it was finished: greater than that of any frame before
   bool doubtful = false;  ///< a worker that had a part in it was found divergent afterwards
+  bool black = false;     ///< no light has reached any pixel of a finished frame
 };
 
 /// Workers of which it is kept when they could be trusted: the last ones.
@@ -229,6 +230,8 @@ class JobStore {
                                                               const StoredLine& line) = 0;
   /// Frames of the job that are doubtful, in order, at most `limit`.
   virtual core::Result<std::vector<int32_t>> doubtful(uint64_t job, uint32_t limit) = 0;
+  /// Frames of the job that are black, in order, at most `limit`.
+  virtual core::Result<std::vector<int32_t>> black(uint64_t job, uint32_t limit) = 0;
 
   /// All tokens, also those that are of no use any more, the oldest first.
   virtual core::Result<std::vector<StoredToken>> tokens() = 0;

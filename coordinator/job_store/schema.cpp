@@ -153,6 +153,10 @@ INSERT INTO specs SELECT id, spec FROM jobs;
 ALTER TABLE jobs DROP COLUMN spec;
 CREATE INDEX jobs_of_owner ON jobs (owner, id);
 )",
+    R"(
+ALTER TABLE frames ADD COLUMN black INTEGER NOT NULL DEFAULT 0;
+CREATE INDEX black_frames ON frames (job, frame) WHERE black;
+)",
 };
 
 /// A number as protobuf writes it.

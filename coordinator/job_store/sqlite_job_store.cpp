@@ -358,6 +358,10 @@ class SqliteJobStore final : public JobStore {
     const core::MutexLock lock(mutex_);
     return read_doubtful(db_.get(), job, limit);
   }
+  core::Result<std::vector<int32_t>> black(uint64_t job, uint32_t limit) override {
+    const core::MutexLock lock(mutex_);
+    return read_black(db_.get(), job, limit);
+  }
 
   core::Status add_lines(uint64_t job, const std::vector<StoredLine>& lines) override {
     return at_once([&]() HYADES_REQUIRES(mutex_) { return lines_.add(db_.get(), job, lines); });

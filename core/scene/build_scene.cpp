@@ -15,6 +15,7 @@
 #include "core/geometry/placement_check.h"
 #include "core/job/check_colors.h"
 #include "core/job/check_frame.h"
+#include "core/job/darkness.h"
 #include "core/job/layers.h"
 #include "core/job/mesh_files.h"
 #include "core/scene/add_bodies.h"
@@ -260,9 +261,7 @@ class SceneBuilder {
           "than 0");
       return;
     }
-    scene_->warnings.emplace_back(
-        "nothing gives light, the picture will be black: expected lights, an environment, or an "
-        "object with 'emit'");
+    scene_->warnings.emplace_back(kNothingGivesLight);
   }
 
   Status add_camera() {

@@ -285,13 +285,16 @@ export class Frames {
               ? 'finishing'
               : frame.state === 'failed'
                 ? 'failed'
-                : '',
+                : frame.black
+                  ? 'black'
+                  : '',
       );
       cell.line.style.transform = `scaleX(${part})`;
       // Of few frames, each is told; of many, the mark says it.
       setAttribute(cell.empty, 'data-text', this.list.length <= FEW ? (EMPTY[frame.state] ?? '') : '');
       cell.link.title =
         frame.reason ||
+        (frame.black ? 'black all over: no light reaches what the camera sees' : '') ||
         (frame.worker_class
           ? `${frame.state}, class ${brief(frame.worker_class)}${frame.restarts ? `, begun anew ${counted(frame.restarts, 'time')}` : ''}`
           : '');

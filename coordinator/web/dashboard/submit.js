@@ -124,10 +124,11 @@ class SubmitView {
     this.line = h('p', {});
     this.status.replaceChildren(this.gauge, this.line);
     try {
-      const { job, existed } = await this.bring(options, this.bundle.chosen(), stop.signal);
+      const { job, existed, warnings } = await this.bring(options, this.bundle.chosen(), stop.signal);
       learnJobs([job]);
       this.content = null;
       toast(existed ? `${job.name} was there already` : `${job.name} was taken in as job ${job.id}`);
+      for (const warning of warnings) toast(warning, 'bad');
       if (!this.left) location.hash = to('job', { job: job.id });
     } catch (error) {
       this.refused(error);

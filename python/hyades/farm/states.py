@@ -116,6 +116,8 @@ class FrameState:
     worker_class: str = ""
     restarts: int = 0
     doubtful: bool = False
+    black: bool = False
+    """It is done, and no light reaches what the camera sees."""
     noise: float | None = None
 
 

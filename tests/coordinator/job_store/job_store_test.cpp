@@ -333,6 +333,19 @@ TEST_F(DivergentWorkers, AreNotToldApartWhereTheyAreTooMany) {
   EXPECT_EQ(mark_divergent(1, 0), std::vector<int32_t>{4});
 }
 
+TEST(JobStore, KeepsWhichFramesAreBlack) {
+  const test::TempFolder folder;
+  auto store = open(folder.file("state.db"));
+  ASSERT_TRUE(store->add_job(some_job("", "ada")).ok());
+  StoredFrame frame{3, true, "", "class", 0};
+  ASSERT_TRUE(store->frame_over(1, frame, {}).ok());
+  EXPECT_TRUE(store->black(1, 10)->empty());
+  frame.black = true;
+  ASSERT_TRUE(store->frame_over(1, frame, {}).ok());
+  EXPECT_EQ(*store->black(1, 10), std::vector<int32_t>{3});
+  EXPECT_TRUE(store->frames(1)->at(0).black);
+}
+
 TEST(JobStore, FilesOfTheFirstSchemasAreBroughtUpToDate) {
   const test::TempFolder folder;
   const std::string path = folder.file("state.db");
@@ -347,6 +360,7 @@ TEST(JobStore, FilesOfTheFirstSchemasAreBroughtUpToDate) {
                          "ALTER TABLE jobs ADD COLUMN spec BLOB NOT NULL DEFAULT x''; "
                          "UPDATE jobs SET spec = (SELECT spec FROM specs WHERE job = id); "
                          "DROP TABLE specs; DROP INDEX jobs_of_owner; "
+                         "DROP INDEX black_frames; ALTER TABLE frames DROP COLUMN black; "
                          "DROP TABLE removals; DROP INDEX doubtful_frames; ALTER TABLE frames DROP "
                          "COLUMN doubtful; "
                          "DROP TABLE parts; DROP TABLE trusted; DROP INDEX outputs_of_frame; "
@@ -365,6 +379,7 @@ TEST(JobStore, FilesOfTheFirstSchemasAreBroughtUpToDate) {
   const auto frames = store->frames(1);
   ASSERT_EQ(frames->size(), 1U);
   EXPECT_FALSE(frames->at(0).doubtful);
+  EXPECT_FALSE(frames->at(0).black);
   EXPECT_EQ((*store->job(1))->spec, some_job("", "ada").spec);
   EXPECT_EQ((*store->job(1))->core_ns, 0U);
   EXPECT_FALSE((*store->job(1))->preview);
@@ -393,6 +408,7 @@ TEST(JobStore, OwnersOfTheSixthSchemaAreProvenByTokensThatWereThereBefore) {
                          "ALTER TABLE jobs ADD COLUMN spec BLOB NOT NULL DEFAULT x''; "
                          "UPDATE jobs SET spec = (SELECT spec FROM specs WHERE job = id); "
                          "DROP TABLE specs; DROP INDEX jobs_of_owner; "
+                         "DROP INDEX black_frames; ALTER TABLE frames DROP COLUMN black; "
                          "DROP TABLE removals; "
                          "DROP TRIGGER count_core_time; DROP TABLE core_time; "
                          "ALTER TABLE jobs DROP COLUMN owner_proven; "

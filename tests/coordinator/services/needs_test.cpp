@@ -82,6 +82,7 @@ TEST(Needs, OfOlderJobStoresAreTakenOver) {
                          "ALTER TABLE jobs ADD COLUMN spec BLOB NOT NULL DEFAULT x'';"
                          "UPDATE jobs SET spec = (SELECT spec FROM specs WHERE job = id);"
                          "DROP TABLE specs; DROP INDEX jobs_of_owner;"
+                         "DROP INDEX black_frames; ALTER TABLE frames DROP COLUMN black;"
                          "DROP TABLE removals;"
                          "ALTER TABLE jobs DROP COLUMN options; DROP TABLE secret;"
                          "ALTER TABLE tokens DROP COLUMN pool;"

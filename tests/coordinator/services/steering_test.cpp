@@ -87,6 +87,50 @@ TEST(Steering, WaitingIsNotWhatAJobTook) {
             1e-3 * static_cast<double>(over.ended_ms() - over.begun_ms()) - 0.5);
 }
 
+TEST(Steering, AFrameThatIsBlackAllOverIsToldOf) {
+  FarmWorld world;
+  world.start();
+  const uint64_t job = world.submit(2);
+  ScriptedWorker::Script script = world.script();
+  script.corrupt = [](core::Film& film) {
+    for (int channel = 0; channel < 3; ++channel) {
+      std::ranges::fill(film.mutable_plane(channel), core::Fixed128{});
+    }
+  };
+  script.meddle = [&](ScriptedWorker&, const v1::LeasedUnit& leased) {
+    return leased.unit().frame() == 1 ||
+           eventually([&] { return world.get(job).frames(0).state() == v1::FRAME_STATE_DONE; });
+  };
+  constexpr const char* kBlack = "frame 1 is black all over";
+  const ScriptedWorker worker(world.address, script);
+  ASSERT_TRUE(eventually([&] { return world.get(job).frames(0).black(); }));
+  EXPECT_NE(world.explain(job).find(kBlack), std::string::npos) << world.explain(job);
+  ASSERT_TRUE(world.wait_for(job, v1::JOB_STATE_DONE));
+  EXPECT_TRUE(world.get(job).frames(1).black());
+  EXPECT_NE(world.explain(job).find(kBlack), std::string::npos) << "after its end too";
+  EXPECT_NE(log_of(world, job).find("is black all over"), std::string::npos);
+}
+
+TEST(Steering, AJobThatNothingLightsIsWarnedOf) {
+  FarmWorld world;
+  world.start();
+  std::string text = FarmWorld::document(1);
+  ASSERT_TRUE(world.upload(text).ok());
+  v1::SubmitResponse response;
+  ASSERT_TRUE(world.jobs->Submit(world.context().get(), world.request(text), &response).ok());
+  EXPECT_EQ(response.warnings_size(), 0);
+  constexpr std::string_view kSky = "environment: {color: 1}\n";
+  text.erase(text.find(kSky), kSky.size());
+  ASSERT_TRUE(world.upload(text).ok());
+  const grpc::Status status =
+      world.jobs->Submit(world.context().get(), world.request(text), &response);
+  ASSERT_TRUE(status.ok()) << status.error_message();
+  ASSERT_EQ(response.warnings_size(), 1);
+  EXPECT_TRUE(eventually([&] {
+    return log_of(world, response.job().id()).find(response.warnings(0)) != std::string::npos;
+  }));
+}
+
 TEST(Steering, AJobsLogTellsOfStartsAndOfWhatPeopleDo) {
   FarmWorld world;
   world.start();

@@ -184,6 +184,9 @@ class TroubledStore final : public JobStore {
   core::Result<std::vector<int32_t>> doubtful(uint64_t job, uint32_t limit) override {
     return read([&] { return store_->doubtful(job, limit); });
   }
+  core::Result<std::vector<int32_t>> black(uint64_t job, uint32_t limit) override {
+    return read([&] { return store_->black(job, limit); });
+  }
   core::Result<std::vector<StoredToken>> tokens() override { return store_->tokens(); }
   core::Status add_token(const StoredToken& token) override {
     return written([&] { return store_->add_token(token); });
