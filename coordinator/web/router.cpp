@@ -44,14 +44,15 @@ std::optional<std::map<std::string, std::string>> match(const std::vector<std::s
   return found;
 }
 
-/// Whether a browser asks for what is a view of the dashboard.
+/// Whether a browser asks for what may be a view of the dashboard: where there is none of this name
+/// the page says so, in a person's words.
 bool is_view(const WebRequest& request) {
-  static const std::set<std::string> kViews = {"jobs", "workers", "submit"};
+  static const std::set<std::string> kOthers = {"api", "dashboard"};
   const auto is_plain = [](const std::string& part) {
     return std::all_of(part.begin(), part.end(),
                        [](char c) { return core::is_letter_or_digit(c) || c == '-'; });
   };
-  return request.method == "GET" && !request.path.empty() && kViews.contains(request.path[0]) &&
+  return request.method == "GET" && !request.path.empty() && !kOthers.contains(request.path[0]) &&
          request.header("accept").find("text/html") != std::string::npos &&
          std::all_of(request.path.begin(), request.path.end(), is_plain);
 }

@@ -97,6 +97,20 @@ TEST(Protocol, TheDashboardComesPackedToWhoTakesThat) {
             304);
 }
 
+TEST(Protocol, ABrowserThatAsksForNoPageIsBroughtToTheOneThatSaysSo) {
+  WebWorld world;
+  world.start();
+  const HttpClient::Headers browser{{"Accept", "text/html,*/*;q=0.8"}};
+  for (const char* path : {"/jobs/1", "/job/1", "/nope"}) {
+    const auto there = world.client->get(path, browser);
+    EXPECT_EQ(there.status, 302) << path;
+    EXPECT_EQ(there.headers.at("location"), std::string("/#") + path);
+    EXPECT_EQ(world.client->get(path).status, 404) << "programs are told so";
+  }
+  EXPECT_EQ(world.client->get("/api/v1/nope", browser).status, 404);
+  EXPECT_EQ(world.client->get("/dashboard/nope", browser).status, 404);
+}
+
 TEST(Protocol, WhoTakesPackedBytesIsUnderstood) {
   EXPECT_TRUE(takes_gzip("gzip"));
   EXPECT_TRUE(takes_gzip("deflate, gzip;q=0.5"));
