@@ -1,6 +1,6 @@
 // The farm at a glance: what is wrong, who is there, how fast, what runs, what waits.
 import * as api from './api.js';
-import { bar, chip, command, nothing } from './parts.js';
+import { asking, bar, chip, command, nothing } from './parts.js';
 import { counted, duration, moment, percent, rate, rateInWords, whole } from './format.js';
 import { farm, isOpen, learnJobs, onFarm, speed } from './farm_state.js';
 import { h, keyed, setText } from './dom.js';
@@ -38,12 +38,12 @@ class FarmView {
     this.thumbs = new Thumbs();
     this.sky = starMap((worker) => this.goToWorker(worker));
     this.chart = flowChart();
-    this.speedNow = h('span', { class: 'soft', testid: 'farm-speed' });
-    this.skyNow = h('span', { class: 'soft' });
+    this.speedNow = h('span', { class: 'soft', testid: 'farm-speed', text: 'Asking the coordinator…' });
+    this.skyNow = h('span', { class: 'soft', text: 'Asking the coordinator…' });
     this.now = h('div', { class: 'now-list', testid: 'now' });
     this.queue = h('ul', { class: 'queue-list', testid: 'queue' });
     this.queueCount = h('span', { class: 'soft' });
-    this.queueNone = h('p', { class: 'soft box-head', text: 'Nothing waits.', hidden: true });
+    this.queueNone = h('p', { class: 'soft box-head', text: 'Asking the coordinator…' });
     this.ended = h('ul', { class: 'queue-list', testid: 'ended' });
     this.endedBox = h(
       'div',
@@ -56,7 +56,8 @@ class FarmView {
       ),
       this.ended,
     );
-    this.nowNone = h('div', {});
+    this.endedBox.hidden = true;
+    this.nowNone = h('div', {}, asking('box-head'));
     this.table = workerTable(noWorkers);
     this.tableCount = h('span', { class: 'soft' });
     const box = (kind, title, more, ...body) =>
@@ -231,7 +232,8 @@ class FarmView {
           ? whole(rest.length)
           : '',
     );
-    this.queueNone.hidden = rest.length > 0 || !farm.info;
+    setText(this.queueNone, 'Nothing waits.');
+    this.queueNone.hidden = rest.length > 0;
     const over = [...farm.jobs.values()]
       .filter((job) => !isOpen(job))
       .sort((a, b) => b.ended_ms - a.ended_ms)

@@ -167,7 +167,13 @@ export class Frames {
     this.jump.hidden = this.state.numbers.length < 40;
     setText(
       this.nothing,
-      this.list.length === 0 ? (this.state.numbers.length === 0 ? '' : 'No frame is like that.') : '',
+      this.list.length > 0
+        ? ''
+        : this.state.numbers.length > 0
+          ? 'No frame is like that.'
+          : this.state.job
+            ? ''
+            : 'Asking the coordinator…',
     );
   }
 

@@ -95,12 +95,13 @@ class JobView {
 
   makeHead() {
     this.name = h('h1', { text: `Job ${this.id}`, testid: 'job-name' });
-    this.chip = chip('unknown');
+    this.chip = chip('loading');
     this.chip.dataset.testid = 'job-state';
     this.meta = h('p', { class: 'job-meta' });
     this.buttons = h('div', { class: 'buttons', testid: 'job-actions' });
     this.gauge = bar('Progress');
     this.gauge.classList.add('big');
+    this.gauge.hidden = true; // until something is known
     this.figures = {
       progress: figure('Progress', 'job-progress'),
       noise: figure('Noise', 'job-noise'),
@@ -118,6 +119,7 @@ class JobView {
       {
         type: 'button',
         class: 'plain square',
+        hidden: true,
         'aria-label': 'Change the priority',
         title: 'Change the priority',
         testid: 'change-priority',
@@ -129,15 +131,16 @@ class JobView {
       icon('edit'),
     );
     this.priorityButton = priority;
+    for (const unusual of [this.figures.noise, this.figures.cost]) unusual.hidden = true;
     this.figures.priority.lastChild.append(priority);
     this.reasons = h('ul', { class: 'reasons' });
     this.whyBox = h(
       'details',
-      { class: 'why', testid: 'why' },
+      { class: 'why', testid: 'why', hidden: true },
       h('summary', { text: 'Why is it waiting?' }),
       this.reasons,
     );
-    this.trouble = h('p', { class: 'job-reason', testid: 'job-reason' });
+    this.trouble = h('p', { class: 'job-reason', testid: 'job-reason', hidden: true });
     this.failures = h('ul', { class: 'reasons failures', 'aria-label': 'Frames that failed', testid: 'failures' });
     this.head = h(
       'section',
@@ -283,6 +286,7 @@ class JobView {
     setText(this.meta, meta.filter(Boolean).join(' · '));
     const open = isOpen(job);
     const part = share(job);
+    this.gauge.hidden = false;
     this.gauge.set(part, { failed: job.frames > 0 ? job.frames_failed / job.frames : 0, state: job.state });
     const { figures } = this;
     figures.progress.set(percent(part));
@@ -392,7 +396,7 @@ class JobView {
   async why() {
     const { job } = this.state;
     if (!job || document.hidden) return;
-    const stuck = isOpen(job) && job.leased === 0;
+    const stuck = isOpen(job) && lookOf(job) !== 'running';
     if (this.stuck !== stuck) this.whyBox.open = stuck;
     this.stuck = stuck;
     setText(

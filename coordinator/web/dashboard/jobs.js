@@ -2,7 +2,7 @@
 import * as api from './api.js';
 import { ACTIONS, act } from './job_actions.js';
 import { noJobs } from './welcome.js';
-import { nothing } from './parts.js';
+import { asking, nothing } from './parts.js';
 import { counted, whole } from './format.js';
 import { farm, isOpen, learnJobs, onFarm } from './farm_state.js';
 import { h, oncePerFrame, setText, toast } from './dom.js';
@@ -115,7 +115,7 @@ class JobsView {
   }
 
   emptiness() {
-    if (!farm.info) return h('p', { class: 'soft', text: 'Asking the coordinator…' });
+    if (!farm.info) return asking();
     if (this.loading) return h('p', { class: 'soft', text: 'Looking for ended jobs…' });
     if (this.query.q || this.query.owner) return h('p', { class: 'soft', text: 'No job is like that.' });
     if (this.query.state === 'open')
@@ -179,7 +179,7 @@ class JobsView {
     for (const pill of this.states.children) {
       const { state } = pill.dataset;
       pill.setAttribute('aria-pressed', state === this.query.state);
-      const known = OPEN_STATES.includes(state) || past.whole;
+      const known = farm.info && (OPEN_STATES.includes(state) || past.whole);
       setText(pill.lastChild, known ? whole(counts[state] ?? 0) : '');
     }
     const owners = [...new Set(all.map((job) => job.owner).filter(Boolean))].sort();

@@ -2,7 +2,7 @@
 import { h, s, setAttribute, setText } from './dom.js';
 import { percent } from './format.js';
 
-const STATE_WORDS = { unknown: 'unknown state' };
+const STATE_WORDS = { unknown: 'unknown state', loading: 'loading…' };
 
 /** The state of a job, frame or worker, with a mark that does without colour. */
 export function chip(state) {
@@ -43,6 +43,9 @@ export function figure(name, testid, title) {
   node.set = (text) => setText(number, text);
   return node;
 }
+
+/** What stands where the coordinator's answer is waited for; `kind` 'box-head' in a box. */
+export const asking = (kind = 'pad') => h('p', { class: `soft ${kind}`, text: 'Asking the coordinator…' });
 
 /** A message for where there is no data: a title, then nodes. */
 export const nothing = (title, ...body) =>

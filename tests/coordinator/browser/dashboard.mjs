@@ -220,4 +220,36 @@ await step('the other views are there', async () => {
   await shot('farm');
 });
 
+await step('an address that is none is told of on the page', async () => {
+  await page.goto(`${url}/job/1`);
+  await page.getByText('There is no such page').waitFor();
+});
+
+await step('while answers are slow nothing is told that is not known', async () => {
+  await page.route('**/api/v1/**', async (route) => {
+    await new Promise((go) => setTimeout(go, 4000));
+    await route.continue().catch(() => {}); // the page may be left
+  });
+  const open = async (view) => {
+    await page.goto('about:blank');
+    await page.goto(`${url}/#/${view}`);
+    await page.locator('h1').first().waitFor({ state: 'attached' });
+  };
+  await open('jobs');
+  assert.equal(await at('state-open').textContent(), 'Open');
+  assert.equal(await at('state-waiting').textContent(), 'Waiting');
+  await shot('slow-jobs');
+  await open(`jobs/${second}`);
+  assert.equal(await state(), 'loading…');
+  assert.ok(await at('why').isHidden());
+  assert.ok(await page.getByRole('progressbar', { name: 'Progress' }).isHidden());
+  await shot('slow-job');
+  await open('');
+  assert.equal(await page.getByText('Asking the coordinator…').count(), 4);
+  await shot('slow-farm');
+  await page.unroute('**/api/v1/**');
+  await page.getByText('maia').first().waitFor();
+  assert.equal(await page.getByText('Asking the coordinator…').filter({ visible: true }).count(), 0);
+});
+
 await finish();
