@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdio>
+#include <string_view>
 
 #include <fmt/format.h>
 
@@ -15,6 +16,8 @@ std::string no_frames_error(const std::string& text) {
 
 namespace {
 
+constexpr std::string_view kOption = "--frames ";
+
 /// Of the form alone.
 core::Result<FrameRange> read_range(const std::string& text) {
   FrameRange range;
@@ -26,7 +29,7 @@ core::Result<FrameRange> read_range(const std::string& text) {
     if (std::sscanf(text.c_str(), "%d-%d%n", &range.first, &range.last, &used) < 2 || !whole()) {
       if (std::sscanf(text.c_str(), "%d%n", &range.first, &used) < 1 || !whole()) {
         return core::Error{fmt::format(
-            "--frames {}: expected a frame (7), a range (1-10) or a range with a step (1-10x2)",
+            "{}{}: expected a frame (7), a range (1-10) or a range with a step (1-10x2)", kOption,
             text)};
       }
       range.last = range.first;
@@ -34,7 +37,7 @@ core::Result<FrameRange> read_range(const std::string& text) {
   }
   if (range.step < 1 || range.first > range.last) {
     return core::Error{fmt::format(
-        "--frames {}: expected a range from its first frame on, such as 1-10 or 1-10x2", text)};
+        "{}{}: expected a range from its first frame on, such as 1-10 or 1-10x2", kOption, text)};
   }
   return range;
 }
@@ -45,7 +48,8 @@ core::Result<std::vector<FrameRange>> parse_frame_list(const std::string& text) 
   std::vector<FrameRange> ranges;
   for (size_t begin = 0; begin <= text.size();) {
     const size_t end = std::min(text.find(',', begin), text.size());
-    const auto range = read_range(text.substr(begin, end - begin));
+    const std::string one = text.substr(begin, end - begin);
+    const auto range = read_range(one.empty() ? text : one);  // what is wrong is seen in the whole
     if (!range) return range.error();
     ranges.push_back(*range);
     begin = end + 1;
@@ -55,7 +59,10 @@ core::Result<std::vector<FrameRange>> parse_frame_list(const std::string& text) 
 
 std::string frame_list_error(const std::string& text) {
   const auto ranges = parse_frame_list(text);
-  return ranges ? std::string() : ranges.error().message;
+  if (ranges) return {};
+  // CLI11 says which option it is.
+  const std::string& message = ranges.error().message;
+  return message.starts_with(kOption) ? message.substr(kOption.size()) : message;
 }
 
 core::Result<FrameRange> parse_frames(const core::FramesDesc& job, const std::string& text) {
@@ -64,7 +71,7 @@ core::Result<FrameRange> parse_frames(const core::FramesDesc& job, const std::st
   if (!read) return read.error();
   const FrameRange range = *read;
   if (range.first < job.first || range.last > job.last) {
-    return core::Error{fmt::format("--frames {}: expected frames within the job's range {}-{}",
+    return core::Error{fmt::format("{}{}: expected frames within the job's range {}-{}", kOption,
                                    text, job.first, job.last)};
   }
   return range;

@@ -132,6 +132,8 @@ TEST_F(Client, FetchSaysWhichFramesFailedOrAreMissing) {
     ran = with({"--frames", wrong});
     EXPECT_EQ(ran.status, kBadArguments) << wrong;
     EXPECT_TRUE(has(ran.err, "expected a ")) << ran.err;
+    EXPECT_TRUE(has(ran.err, std::string("--frames ") + wrong)) << ran.err;
+    EXPECT_EQ(ran.err.find("--frames"), ran.err.rfind("--frames")) << ran.err;
   }
   EXPECT_EQ(with({"--list"}).status, kDone);
 
