@@ -11,6 +11,7 @@
 #include "cli/client/show.h"
 #include "cli/client_commands.h"
 #include "cli/number_range.h"
+#include "core/base/text.h"
 
 namespace hyades::cli {
 namespace {
@@ -38,6 +39,13 @@ int for_each_job(const ClientApp& app, const std::vector<std::string>& names, Na
     }
     if (json) {
       list.push_back(to_json(job));
+    } else if (job.state() == v1::JOB_STATE_CANCELLED) {
+      std::printf(
+          "job %lu (%s) is cancelled at %s, %u of %s done: hyades retry %lu goes on from "
+          "there\n",
+          id, core::printable(job.name()).c_str(),
+          percent(job.samples_done(), job.samples()).c_str(), job.frames_done(),
+          core::counted(job.frames(), "frame").c_str(), id);
     } else if (job.state() != v1::JOB_STATE_UNSPECIFIED) {
       std::printf("job %lu (%s) is %s, priority %d\n", id, core::printable(job.name()).c_str(),
                   job_look(job).c_str(), job.priority());

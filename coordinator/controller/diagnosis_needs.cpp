@@ -133,9 +133,10 @@ std::vector<std::string> Diagnosis::where_units_are(JobId job) const {
   }
   for (const auto& [unknown, count] : told) silent += count;
   add(away, "with workers whose connection is lost");
-  add(silent, "of which nothing is known yet");
-  return {fmt::format("{} with workers: {}", core::counted(units.size(), "unit"),
-                      fmt::join(parts, ", "))};
+  const std::string all = core::counted(units.size(), "unit") + " with workers";
+  if (parts.empty()) return {all};  // they tell of them in a moment
+  add(silent, "of which they tell in a moment");
+  return {fmt::format("{}: {}", all, fmt::join(parts, ", "))};
 }
 
 /// Units of the job that get no further, in words.
