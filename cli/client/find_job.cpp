@@ -128,8 +128,9 @@ Outcome find_job(FarmClient& client, const std::string& text, Namesakes namesake
   }
   if (ids.empty()) {
     const std::vector<std::string> candidates(names.begin(), names.end());
+    const std::string hint = core::did_you_mean(text, candidates);
     return Failure{kUnknown, fmt::format("there is no job '{}'{}", text,
-                                         core::did_you_mean(text, candidates))};
+                                         hint.empty() ? " (hyades jobs --all lists them)" : hint)};
   }
   id = ids.front();
   if (ids.size() == 1) return std::nullopt;

@@ -40,6 +40,16 @@ void print_workers(const v1::WorkersResponse& response) {
   print_table(rows);
 }
 
+/// What is said besides of a name that no worker has.
+std::string near_workers(FarmClient& client, const std::string& name) {
+  v1::WorkersResponse all;
+  if (client.workers(all)) return {};
+  std::vector<std::string> names;
+  for (const v1::Worker& worker : all.workers()) names.push_back(worker.name());
+  const std::string near = core::did_you_mean(name, names);
+  return near.empty() ? " (hyades workers lists them)" : near;
+}
+
 template <class Method>
 int act_on_worker(const char* command, const char* description, Method method, int argc,
                   char** argv) {
@@ -63,6 +73,7 @@ int act_on_worker(const char* command, const char* description, Method method, i
     request.set_reason(reason);
     v1::WorkerResponse response;
     if (auto failure = client->call(method, request, response)) {
+      if (failure->code == kUnknown) failure->message += near_workers(*client, name);
       const int status = app.report(*failure);
       if (worst == kDone) worst = status;
       if (status == kNoAnswer) break;
