@@ -31,7 +31,7 @@ _hyades() {
   elif [[ $before == --* ]]; then
     _hyades_offer "$word" < <("$program" "${COMP_WORDS[1]}" --help 2>/dev/null | sed -nE "s/^.*$before ([a-z]+(\|[a-z]+)+)( .*)?$/\1/p" | tr '|' '\n')
   elif [[ " status watch fetch logs trace explain pause resume cancel retry priority delete " == *" ${COMP_WORDS[1]} "* ]]; then
-    _hyades_offer "$word" < <(timeout 2 "$program" jobs --all --names 2>/dev/null)
+    _hyades_offer "$word" < <(timeout 2 "$program" jobs --all --names --for "${COMP_WORDS[1]}" 2>/dev/null)
   elif [[ " drain quarantine release " == *" ${COMP_WORDS[1]} "* ]]; then
     _hyades_offer "$word" < <(timeout 2 "$program" workers --names 2>/dev/null)
   elif [[ " ${COMP_WORDS[1]} ${COMP_WORDS[2]} " == " media "@(show|swatch)" " && $COMP_CWORD -gt 2 ]]; then
@@ -61,7 +61,7 @@ _hyades() {
     values=(${(s:|:)"$("$program" "${words[2]}" --help 2>/dev/null | sed -nE "s/^.*${words[CURRENT-1]} ([a-z]+(\|[a-z]+)+)( .*)?$/\1/p")"})
     if (( ${#values} )); then compadd -- $values; else _files; fi
   elif [[ " status watch fetch logs trace explain pause resume cancel retry priority delete " == *" ${words[2]} "* ]]; then
-    compadd -- ${(f)"$(timeout 2 "$program" jobs --all --names 2>/dev/null)"}
+    compadd -- ${(f)"$(timeout 2 "$program" jobs --all --names --for "${words[2]}" 2>/dev/null)"}
   elif [[ " drain quarantine release " == *" ${words[2]} "* ]]; then
     compadd -- ${(f)"$(timeout 2 "$program" workers --names 2>/dev/null)"}
   elif [[ ${words[2]} == media && ${words[3]} == (show|swatch) ]] && (( CURRENT > 3 )); then
@@ -91,7 +91,7 @@ end
 complete -c hyades -n 'test (count (commandline -opc)) -eq 1' -f -a '(__hyades_commands)'
 complete -c hyades -n 'test (count (commandline -opc)) -eq 2' -a '(__hyades_verbs)'
 complete -c hyades -n 'test (count (commandline -opc)) -gt 1; and string match -q -- "-*" (commandline -ct)' -f -a '(__hyades_options)'
-complete -c hyades -n '__fish_seen_subcommand_from status watch fetch logs trace explain pause resume cancel retry priority delete' -f -a '(timeout 2 hyades jobs --all --names 2>/dev/null)'
+complete -c hyades -n '__fish_seen_subcommand_from status watch fetch logs trace explain pause resume cancel retry priority delete' -f -a '(timeout 2 hyades jobs --all --names --for (commandline -opc)[2] 2>/dev/null)'
 complete -c hyades -n '__fish_seen_subcommand_from drain quarantine release' -f -a '(timeout 2 hyades workers --names 2>/dev/null)'
 complete -c hyades -n '__fish_seen_subcommand_from media; and __fish_seen_subcommand_from show swatch' -a '(hyades media list 2>/dev/null | sed -nE "2,\$s/ .*//p")'
 complete -c hyades -n '__fish_seen_subcommand_from completion' -f -a 'bash zsh fish'

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <cstdio>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -12,6 +13,7 @@
 #include "cli/client_commands.h"
 #include "cli/frame_range.h"
 #include "core/base/text.h"
+#include "farm/job_state.h"
 
 namespace hyades::cli {
 namespace {
@@ -49,6 +51,32 @@ std::string hours_text(const v1::Job& job) {
     text += job.cost() < 0.01 ? " (< 0.01)" : fmt::format(" ({:.2f})", job.cost());
   }
   return text;
+}
+
+/// Whether the command can do something to the job.
+bool suits(const v1::Job& job, const std::string& command) {
+  const bool ended = farm::has_ended(job);
+  if (command == "resume") return job.state() == v1::JOB_STATE_PAUSED;
+  if (command == "pause") return job.state() == v1::JOB_STATE_RUNNING;
+  if (command == "cancel" || command == "priority") return !ended;
+  if (command == "delete") return ended;
+  if (command == "retry") {
+    return job.state() == v1::JOB_STATE_CANCELLED || job.state() == v1::JOB_STATE_FAILED ||
+           job.frames_failed() > 0;
+  }
+  return true;
+}
+
+/// What a person can call each of those that suit the command: the name, or the id where others
+/// have that name too.
+void print_names(const std::vector<v1::Job>& jobs, const std::string& command) {
+  std::map<std::string, int> named;
+  for (const v1::Job& job : jobs) ++named[job.name()];
+  for (const v1::Job& job : jobs) {
+    if (!suits(job, command)) continue;
+    const bool alone = named[job.name()] == 1;
+    std::printf("%s\n", core::printable(alone ? job.name() : std::to_string(job.id())).c_str());
+  }
 }
 
 void print_jobs(const std::vector<v1::Job>& jobs) {
@@ -147,9 +175,14 @@ int jobs_command(int argc, char** argv) {
   bool names = false;
   bool json = false;
   std::string owner;
+  std::string command;
   app.app().add_flag("--all", all, "all that have ended");
   app.app().add_option("--owner", owner, "only the jobs of this owner");
-  app.app().add_flag("--names", names, "print their names alone, one a line");
+  CLI::Option* only_names = app.app().add_flag(
+      "--names", names, "print their names alone, one a line: ids where several have one name");
+  app.app()
+      .add_option("--for", command, "only the names of those that this command can do something to")
+      ->needs(only_names);
   app.app().add_flag("--json", json,
                      "print them as JSON (field id); without --all only those that are open");
   app.give_examples({"hyades jobs", "hyades jobs --all --owner ann", "hyades jobs --json"});
@@ -167,7 +200,7 @@ int jobs_command(int argc, char** argv) {
     for (const v1::Job& job : jobs) list.push_back(to_json(job));
     print_json(list);
   } else if (names) {
-    for (const v1::Job& job : jobs) std::printf("%s\n", core::printable(job.name()).c_str());
+    print_names(jobs, command);
   } else if (jobs.empty()) {
     std::printf("no jobs\n");
   } else {

@@ -16,6 +16,17 @@ TEST_F(Client, JobsAreListed) {
   EXPECT_EQ(json::parse(run(jobs_command, at({"--json", "--owner", "bob"})).out).size(), 1U);
   EXPECT_TRUE(has(run(jobs_command, at({"--all"})).out, "done"));
   EXPECT_EQ(run(jobs_command, at({"--names"})).out, "e\nd\nc\na\n");
+  farm_.jobs[0].set_state(v1::JOB_STATE_PAUSED);
+  farm_.jobs[3].set_state(v1::JOB_STATE_CANCELLED);
+  farm_.jobs[4].set_name("c");
+  const auto offered = [&](const char* command) {
+    return run(jobs_command, at({"--all", "--names", "--for", command})).out;
+  };
+  EXPECT_EQ(offered("status"), "5\nd\n3\nb\na\n") << "two are called c";
+  EXPECT_EQ(offered("resume"), "a\n");
+  EXPECT_EQ(offered("cancel"), "5\n3\na\n");
+  EXPECT_EQ(offered("retry"), "d\n");
+  EXPECT_EQ(offered("delete"), "d\nb\n");
 }
 
 TEST_F(Client, JobsThatEndedLastAreListedWithWhatTheyTook) {
@@ -189,7 +200,9 @@ TEST_F(Client, WorkersAreListedAndSteered) {
   EXPECT_EQ(run(release_command, at({"node1/0"})).status, kDone);
   EXPECT_EQ(farm_.workers[0].state(), v1::WORKER_STATE_ACTIVE);
   EXPECT_EQ(run(drain_command, at({"node1/0"})).status, kDone);
-  EXPECT_EQ(run(drain_command, at({"node2/0"})).status, kUnknown);
+  const Ran typo = run(drain_command, at({"node2/0"}));
+  EXPECT_EQ(typo.status, kUnknown);
+  EXPECT_TRUE(has(typo.err, "did you mean 'node1/0'?")) << typo.err;
 }
 
 }  // namespace
