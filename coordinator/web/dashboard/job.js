@@ -404,7 +404,8 @@ class JobView {
       !isOpen(job) ? 'How did it end?' : stuck ? 'Why is it waiting?' : 'What is it doing?',
     );
     try {
-      const { reasons } = await explain(this.id);
+      // What is told above is not told again.
+      const reasons = (await explain(this.id)).reasons.filter((text) => text !== this.state.job.reason);
       this.whyBox.hidden = reasons.length === 0;
       keyed(
         this.reasons,
