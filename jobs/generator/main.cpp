@@ -214,16 +214,11 @@ int main(int argc, char** argv) {
   good &= png("textured/tiles.png", make_tiles(512));
   good &= png("textured/tile_normals.png", make_tile_normals(512));
 
-  const auto sky = [&](const char* name, float sun_radius) {
-    const auto written = hyades::core::write_exr(
-        (folder / name).string(),
-        make_sky({.sun_elevation = 0.22F, .sun_azimuth = 2.2F, .sun_radius = sun_radius}),
-        {{"comment", "procedural evening sky with clouds of fBm noise, made by jobs/generator"}},
-        true);
-    if (!written) std::fprintf(stderr, "%s\n", written.error().message.c_str());
-    return written.ok();
-  };
-  good &= sky("quickstart/dusk.exr", 0.035F);
-  good &= sky("quickstart/hazy_dusk.exr", 0.32F);
-  return good ? 0 : 1;
+  const auto sky = hyades::core::write_exr(
+      (folder / "quickstart/dusk.exr").string(),
+      make_sky({.sun_elevation = 0.22F, .sun_azimuth = 2.2F, .sun_radius = 0.035F}),
+      {{"comment", "procedural evening sky with clouds of fBm noise, made by jobs/generator"}},
+      true);
+  if (!sky) std::fprintf(stderr, "%s\n", sky.error().message.c_str());
+  return good && sky.ok() ? 0 : 1;
 }
