@@ -38,7 +38,7 @@ return {
   film = {size = {720, 400}},
   sampling = {samples = 256, seed = 4},
   integrator = {type = "path", max_depth = 8},
-  camera = {look_from = {0, 4.8, 8.4}, look_at = {0, 0.95, 0}, fov = 33},
+  camera = {look_from = {0, 4.8, 8.4}, look_at = {0, 0.85, 0}, fov = 36},
   materials = materials,
   objects = objects,
   environment = {color = {0.12, 0.15, 0.2}},
