@@ -19,6 +19,8 @@ constexpr int kSlowFor = 12;
 constexpr uint32_t kReturnAtOnce = 1000;
 /// A film that could not be set aside stays for so long.
 constexpr Duration kStays = std::chrono::seconds(10);
+/// Frames that wait for their films, of which it is looked at once whether these fit.
+constexpr int kWaitingLookedAt = 64;
 
 }  // namespace
 
@@ -28,7 +30,7 @@ void FrameLifecycle::on(const FrameOpened& e) {
   slot->phase = FramePhase::rendering;
   if (slot->suspect) return restart(*job, *slot);
   void_suspect_tiles(*job, *slot);  // what it has from before a restart
-  for (const uint32_t tile : slot->ledger->to_judge()) judge_if_due(*job, *slot, tile);
+  if (slot->ledger->to_judge().empty() || !await_film(*job, *slot)) go_on(*job, *slot);
   jobs_.update_offer(*job);
   finish_if_complete(*job, *slot);  // a frame without pixels
 }
@@ -65,8 +67,7 @@ void FrameLifecycle::set_aside(const ScheduledJob& job, FrameSlot& slot) {
 void FrameLifecycle::on(const FinishDone& e) {
   const auto [job, slot] = jobs_.find_frame({e.job, e.frame});
   if (slot == nullptr || slot->phase != FramePhase::finishing) return;
-  if (job->begins_again(*slot)) return restart(*job, *slot);
-  if (!slot->ledger->settled()) return reopen(*job, *slot);
+  if (goes_back(*job, *slot)) return;
   if (slot->suspect) return restart(*job, *slot);
   slot->phase = FramePhase::closing;
   records_.persist(FrameFinishedRecord{job->id, slot->frame});
@@ -75,8 +76,7 @@ void FrameLifecycle::on(const FinishDone& e) {
 void FrameLifecycle::on(const FinishFailed& e) {
   const auto [job, slot] = jobs_.find_frame({e.job, e.frame});
   if (slot == nullptr || slot->phase != FramePhase::finishing) return;
-  if (job->begins_again(*slot)) return restart(*job, *slot);
-  if (!slot->ledger->settled()) return reopen(*job, *slot);
+  if (goes_back(*job, *slot)) return;
   if (++slot->finish_attempts < job->plan.max_attempts) {
     say_finish(*job, *slot);
   } else {
@@ -141,11 +141,65 @@ void FrameLifecycle::finish_if_complete(ScheduledJob& job, FrameSlot& slot) {
   if (slot.phase == FramePhase::rendering && slot.ledger->complete()) finish(job, slot);
 }
 
+/// Whether the frame, whose outputs were to be made, is rendered again, or goes on until a conflict
+/// is settled.
+bool FrameLifecycle::goes_back(ScheduledJob& job, FrameSlot& slot) {
+  if (job.begins_again(slot)) {
+    restart(job, slot);
+  } else if (!slot.ledger->settled()) {
+    reopen(job, slot);
+  } else {
+    return false;
+  }
+  return true;
+}
+
+/// Whether the frame's film has left memory and has to wait for room.
+bool FrameLifecycle::await_film(const ScheduledJob& job, FrameSlot& slot) {
+  if (slot.film || (waiting_.empty() && films_.has_room(job))) return false;
+  if (!std::exchange(slot.awaits_film, true)) waiting_.push_back({job.id, slot.frame});
+  return true;
+}
+
+void FrameLifecycle::serve_waiting(
+    const std::function<bool(const ScheduledJob& job, const FrameSlot& slot)>& fits) {
+  film_is_next_ = false;
+  int looked = 0;
+  for (auto it = waiting_.begin();
+       it != waiting_.end() && !film_is_next_ && looked < kWaitingLookedAt; ++looked) {
+    const auto [job, slot] = jobs_.find_frame(*it);
+    const bool waits = slot != nullptr && slot->awaits_film;
+    if (waits && !slot->film && !fits(*job, *slot)) {
+      film_is_next_ = !films_.most_are_of(*job);
+      ++it;
+      continue;
+    }
+    it = waiting_.erase(it);
+    if (!waits) continue;
+    slot->awaits_film = false;
+    films_.take(*job, *slot);
+    go_on(*job, *slot);
+  }
+}
+
+/// Does what is next where no unit is leased: the film is in memory, or has room.
+void FrameLifecycle::go_on(ScheduledJob& job, FrameSlot& slot) {
+  if (slot.phase == FramePhase::finishing) {
+    // While it waited a worker that had a part in it was found divergent.
+    if (goes_back(job, slot)) return;
+    if (slot.suspect) return restart(job, slot);
+    return say_finish(job, slot);
+  }
+  if (slot.phase != FramePhase::rendering) return;
+  for (const uint32_t tile : slot.ledger->to_judge()) judge_if_due(job, slot, tile);
+}
+
 void FrameLifecycle::finish(ScheduledJob& job, FrameSlot& slot) {
-  films_.take(job, slot);
   // Late films may have overtaken units that are still out.
   leases_.take_back(job, slot);
   slot.phase = FramePhase::finishing;
+  if (await_film(job, slot)) return;
+  films_.take(job, slot);
   say_finish(job, slot);
 }
 
@@ -168,6 +222,7 @@ void FrameLifecycle::judge_if_due(const ScheduledJob& job, FrameSlot& slot, uint
 
 void FrameLifecycle::fail(ScheduledJob& job, FrameSlot& slot, std::string reason) {
   slot.phase = FramePhase::closing;
+  slot.awaits_film = false;
   slot.reason = std::move(reason);
   leases_.take_back(job, slot);
   slot.ledger.reset();
@@ -196,6 +251,7 @@ bool FrameLifecycle::note_left(FrameSlot& slot, Origin origin) const {
 
 void FrameLifecycle::restart(ScheduledJob& job, FrameSlot& slot) {
   slot.phase = FramePhase::restarting;
+  slot.awaits_film = false;
   slot.suspect = false;
   leases_.take_back(job, slot);
   slot.ledger.reset();

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <cstdint>
+#include <deque>
+#include <functional>
 #include <optional>
 #include <string>
 
@@ -64,6 +66,13 @@ class FrameLifecycle {
   /// made, that happens once they are.)
   void void_suspect_tiles(const ScheduledJob& job, FrameSlot& slot);
 
+  /// Goes on with frames that are to be finished or judged and whose films were set aside: those of
+  /// which `fits` says so, in order. Whoever has taken most of the room himself holds up nobody.
+  void serve_waiting(
+      const std::function<bool(const ScheduledJob& job, const FrameSlot& slot)>& fits);
+  /// Whether one of them is next in line for room.
+  bool film_is_next() const { return film_is_next_; }
+
   /// It is durable that the frame is done or has failed, as `phase` says.
   void over(ScheduledJob& job, FrameSlot& slot, FramePhase phase);
   /// It is durable that the frame begins again: it waits to be opened.
@@ -77,6 +86,9 @@ class FrameLifecycle {
   std::optional<TimePoint> next_wake() const;
 
  private:
+  bool await_film(const ScheduledJob& job, FrameSlot& slot);
+  void go_on(ScheduledJob& job, FrameSlot& slot);
+  bool goes_back(ScheduledJob& job, FrameSlot& slot);
   void say_finish(const ScheduledJob& job, const FrameSlot& slot);
   void reopen(ScheduledJob& job, FrameSlot& slot);
   bool note_left(FrameSlot& slot, Origin origin) const;
@@ -94,6 +106,8 @@ class FrameLifecycle {
   const Affinity& affinity_;
   TimePoint next_look_;  ///< of restart_stranded()
   uint64_t last_question_ = 0;
+  std::deque<FrameId> waiting_;  ///< of which FrameSlot::awaits_film, and others by now
+  bool film_is_next_ = false;
 };
 
 }  // namespace hyades::coordinator

@@ -129,8 +129,10 @@ void Granting::serve(WorkerId id, Worker& worker, bool units, bool copies) {
 }
 
 void Granting::dispatch() {
-  if (!may_lease()) return;
+  frames_.serve_waiting(
+      [this](const ScheduledJob& job, const FrameSlot& slot) { return film_fits(job, slot); });
   if (films_.refused() && !next_room_) next_room_ = step_.now;
+  if (!may_lease()) return;
   const bool copies = copies_.begin_round();
   if (std::exchange(step_.work_appeared, false)) {
     for (auto it = workers_.waiting().begin(); it != workers_.waiting().end();) {
@@ -196,7 +198,7 @@ bool Granting::grant(WorkerId id, Worker& worker) {
 /// Priorities first, then who has less, then the older job, then the earlier frame. `fresh`: of the
 /// scenes that the worker does not have.
 std::optional<FramePlace> Granting::next_in_line(WorkerId id, const Worker& worker, bool fresh) {
-  bool begun = false;
+  bool begun = frames_.film_is_next();
   for (const auto& [order, share] : jobs_.ready_shares()) {
     if (const auto place = next_of(*share, id, worker, fresh, begun)) return place;
   }
@@ -442,7 +444,7 @@ bool Granting::waits_for_film(const ScheduledJob& job) const {
   if (job.paused) return false;
   return std::any_of(job.in_flight.begin(), job.in_flight.end(), [&](uint32_t i) {
     const FrameSlot& slot = job.slots[i];
-    return slot.phase == FramePhase::rendering && !film_fits(job, slot);
+    return slot.awaits_film || (slot.phase == FramePhase::rendering && !film_fits(job, slot));
   });
 }
 

@@ -27,7 +27,7 @@ enum class FramePhase : uint8_t {
   waiting,     ///< not opened yet
   opening,     ///< OpenFrame was said
   rendering,   ///< its units are leased
-  finishing,   ///< complete; FinishFrame was said
+  finishing,   ///< complete; FinishFrame was said, or will be when its film has room
   closing,     ///< finished or failed; waits for that to be durable
   restarting,  ///< begins again; waits for that to be durable
   returning,   ///< had failed and begins again; likewise, but that very many may be at once
@@ -39,10 +39,11 @@ enum class FramePhase : uint8_t {
 struct FrameSlot {
   int32_t frame = 0;
   FramePhase phase = FramePhase::waiting;
-  bool film = false;      ///< its film is in memory, or will be with its first unit
-  TimePoint film_since;   ///< when it came into memory
-  bool leaving = false;   ///< SetAside was said of it and not answered
-  TimePoint stays_until;  ///< it could not be set aside: not before this
+  bool film = false;         ///< its film is in memory, or will be with its first unit
+  TimePoint film_since;      ///< when it came into memory
+  bool leaving = false;      ///< SetAside was said of it and not answered
+  TimePoint stays_until;     ///< it could not be set aside: not before this
+  bool awaits_film = false;  ///< it is to be finished or judged when its film has room
   uint32_t finish_attempts = 0;
   bool suspect = false;    ///< while it is opened or finished, a worker that had a part was found
                            ///< divergent

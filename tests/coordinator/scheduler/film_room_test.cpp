@@ -280,6 +280,59 @@ TEST_F(FilmRoom, FilmsFromBeforeARestartMayBeSetAsideAlready) {
   EXPECT_EQ(b.scheduler.films(), 60U);
 }
 
+RestoredJob all_of_it_aside() {
+  RestoredJob restored;
+  restored.accepted.push_back({{1, {0, 0, 32, 32}, {0, 1}}, digest(1), "class"});
+  restored.set_aside = {1};
+  return restored;
+}
+
+// Frames that were complete when the coordinator died, or failed and are retried, came into memory
+// all together.
+TEST_F(FilmRoom, CompleteFramesFromBeforeARestartAreFinishedWhenTheirFilmsHaveRoom) {
+  b.add(plan(60), all_of_it_aside(), kJob);
+  EXPECT_EQ(b.only<FinishFrame>().job, kJob);
+  for (const JobId job : {kOther, kThird}) {
+    b.add(plan(60), all_of_it_aside(), job);
+    EXPECT_TRUE(b.all<FinishFrame>().empty());
+  }
+  EXPECT_EQ(b.scheduler.films(), 60U);
+  EXPECT_TRUE(b.scheduler.waits_for_film(kOther));
+  EXPECT_FALSE(b.scheduler.waits_for_film(kJob));
+  tick();
+  EXPECT_TRUE(b.all<FinishFrame>().empty());
+  b.tell(JobCancelled{kOther});  // one that waits
+  b.tell(JobCancelled{kJob});
+  EXPECT_EQ(b.only<FinishFrame>().job, kThird);
+  EXPECT_EQ(b.scheduler.films(), 60U);
+}
+
+TEST_F(FilmRoom, ACompleteFrameThatWaitsIsNotOvertaken) {
+  add(kJob, plan(50));
+  b.ask(kAnna);
+  b.add(plan(60), all_of_it_aside(), kOther);
+  EXPECT_TRUE(b.all<FinishFrame>().empty());
+  add(kThird, plan(30));
+  expect_bert_waits();
+  b.tell(JobCancelled{kJob});
+  EXPECT_EQ(b.only<FinishFrame>().job, kOther);
+  expect_bert_gets(kThird);
+}
+
+TEST_F(FilmRoom, TilesFromBeforeARestartAreJudgedWhenTheirFilmHasRoom) {
+  add(kJob, plan(60));
+  b.ask(kAnna);
+  JobPlan judged = plan(60);
+  judged.batches = 4;
+  judged.rounds = {1, 2};
+  add(kOther, judged, all_of_it_aside());
+  EXPECT_TRUE(b.all<JudgeTile>().empty());
+  EXPECT_EQ(b.scheduler.films(), 60U);
+  b.tell(JobCancelled{kJob});
+  EXPECT_EQ(b.only<JudgeTile>().job, kOther);
+  EXPECT_EQ(b.scheduler.films(), 60U);
+}
+
 TEST_F(FilmRoom, RecordsOfACancelledJobThatNobodyAnswersHoldNobodyUp) {
   add(kJob, plan(90));
   b.deliver(b.ask(kAnna));
