@@ -36,6 +36,7 @@ struct ControllerContext {
   const std::unique_ptr<JobStore> store;
   const std::unique_ptr<farm::ContentStore> assets;
   JobDocuments documents{*assets, options.document_memory};
+  core::Mutex whole_records;  ///< FilmStoreOptions::whole_records
   FilmCopies film_copies{options.film_memory / 4};
   const uint64_t incarnation;  ///< the number of this start
   const LeaseProofs proofs;

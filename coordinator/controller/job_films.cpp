@@ -129,12 +129,15 @@ void JobFilms::fail_frame(ActiveJob& active, RecordId id, const FrameFailedRecor
 
 std::unique_ptr<FilmStore> JobFilms::make(ActiveJob& active, bool resume) {
   const uint32_t samples = active.samples;
-  FilmSet films{active.numbers, active.region, samples, active.threshold.adaptive()};
+  FilmSet films{active.numbers, active.region, samples, active.threshold.adaptive(),
+                active.layout.layers.splats};
   FilmStoreOptions place;
   place.max_waiting_bytes = kWaitingBytes;
   place.folder = context_.films_folder(active.stored.id);
   place.frame_key = [key = active.key](int32_t) { return key; };
   place.kept = resume ? KeptFilms::require : KeptFilms::erase;
+  place.whole_records = &context_.whole_records;
+  place.kept_aside = true;
   place.compact_bytes = context_.options.compact_bytes;
   place.on_sync = [meters = context_.meters.get()](std::chrono::nanoseconds took) {
     meters->synced(took);

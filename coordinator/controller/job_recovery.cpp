@@ -54,18 +54,22 @@ grpc::ByteBuffer brief_of(ActiveJob& active) {
   return bytes_of(told);
 }
 
-/// What became of a frame that is over, by its state and what its film holds.
-FrameEnd end_of(const ActiveJob& active, int32_t frame, v1::FrameState state)
-    HYADES_REQUIRES(state_lock) {
+/// What became of a frame that is over, by its state and its units. Of a film whose tiles are
+/// judged only itself could tell that it is complete; one that has all tiles is taken for that.
+FrameEnd end_of(const ActiveJob& active, const std::vector<AcceptedUnit>& units,
+                v1::FrameState state) HYADES_REQUIRES(state_lock) {
   if (state == v1::FRAME_STATE_DONE) return FrameEnd::finished;
-  const auto film = active.film_store->film(frame);
-  const auto batches =
-      static_cast<uint64_t>(active.region.area()) * core::batch_count(active.samples);
-  const bool complete =
-      film &&
-      (active.threshold.adaptive()
-           ? core::unfinished_tiles(*film, active.region, active.samples, active.threshold).empty()
-           : film->coverage().volume() == batches);
+  uint64_t volume = 0;
+  uint64_t begun = 0;  // pixels
+  for (const auto& [unit, digest, worker_class] : units) {
+    const auto pixels = static_cast<uint64_t>(unit.tile.area());
+    volume += pixels * unit.batches.count;
+    begun += unit.batches.first == 0 ? pixels : 0;
+  }
+  const auto all = static_cast<uint64_t>(active.region.area());
+  const bool complete = active.threshold.adaptive()
+                            ? begun == all
+                            : volume == all * core::batch_count(active.samples);
   return complete ? FrameEnd::unwritten : FrameEnd::failed;
 }
 
@@ -415,7 +419,7 @@ void JobRecovery::restore_films(ActiveJob& active, const LogContents& contents,
       std::erase(restored.finished, number);
     }
     if (frame.state != v1::FRAME_STATE_WAITING) {
-      active.film_store->forget(number, end_of(active, number, frame.state));
+      active.film_store->forget(number, end_of(active, units, frame.state));
       continue;
     }
     frame.state = v1::FRAME_STATE_RENDERING;
@@ -426,33 +430,11 @@ void JobRecovery::restore_films(ActiveJob& active, const LogContents& contents,
       restored.accepted.push_back(unit);
     }
     active.samples_done += frame.samples_done;
-    // Will be finished at once, by another thread than the film store's, which runs by then.
-    if (frame.samples_done == active.samples_per_frame) {
-      active.complete[number] = active.film_store->film(number);
-    }
+    // It stays on the disk until the scheduler has room for it.
+    restored.set_aside.push_back(number);
   }
   for (const auto& [frame, finished] : contents.finished) {
     if (active.frames[frame].state != v1::FRAME_STATE_DONE) active.film_store->reopen(frame);
-  }
-}
-
-/// Films that nobody works at, or that have no room beside those of the jobs that are there, leave
-/// memory at once: all open jobs' together may take more than there is.
-void JobRecovery::set_films_aside(const ActiveJob& active, RestoredJob& restored) {
-  uint64_t room = 0;
-  {
-    const StateLock lock(context_.mutex);
-    const uint64_t taken = dispatcher_.scheduler().films();
-    room = context_.options.film_memory - std::min(taken, context_.options.film_memory);
-  }
-  if (active.stored.state == StoredState::paused) room = 0;
-  for (const int32_t frame : active.in_work) {
-    if (active.complete.contains(frame)) continue;
-    if (active.film_bytes <= room) {
-      room -= active.film_bytes;
-    } else if (active.film_store->set_aside(frame)) {
-      restored.set_aside.push_back(frame);
-    }
   }
 }
 
@@ -463,16 +445,12 @@ core::Status JobRecovery::start(std::unique_ptr<ActiveJob> owned, RestoredJob re
   const bool films = std::filesystem::exists(context_.films_folder(active.stored.id), unknown);
   if (unknown)
     return core::Error{context_.films_folder(active.stored.id) + ": " + unknown.message()};
-  // One job's films come into memory at a time, and count once the scheduler knows the job.
-  std::optional<core::MutexLock> alone;
   if (films) {
-    alone.emplace(loading_);
     active.film_store = films_.make(active, true);
     auto contents = active.film_store->open();
     if (!contents) return contents.error();
     if (contents->cut.tile_size > 0) tile_size = contents->cut.tile_size;
     restore_films(active, *contents, restored);
-    set_films_aside(active, restored);
     if (auto started = active.film_store->start(tile_size); !started) return started;
   }
   active.brief = brief_of(active);

@@ -55,7 +55,7 @@ class JobRecovery {
   /// Recovers the job, which was read before, as it is stored by now; its log says `told`.
   core::Status recover(uint64_t id, JobRead read, const std::string& told)
       HYADES_EXCLUDES(state_lock) HYADES_NO_THREAD_SAFETY_ANALYSIS;
-  /// Reads the films that are there, and hands the job to the scheduler.
+  /// Looks which films are there, and hands the job to the scheduler.
   core::Status start(std::unique_ptr<ActiveJob> owned, RestoredJob restored)
       HYADES_EXCLUDES(state_lock) HYADES_NO_THREAD_SAFETY_ANALYSIS;
 
@@ -74,8 +74,6 @@ class JobRecovery {
                                                    const std::vector<StoredFrame>& frames);
   core::Status repeat_for_videos(const ActiveJob& active, const std::vector<int32_t>& done,
                                  std::set<int32_t>& repeated);
-  void set_films_aside(const ActiveJob& active,
-                       RestoredJob& restored) HYADES_NO_THREAD_SAFETY_ANALYSIS;
   void restore_films(ActiveJob& active, const LogContents& contents,
                      RestoredJob& restored) HYADES_NO_THREAD_SAFETY_ANALYSIS;
 
@@ -83,7 +81,6 @@ class JobRecovery {
   Dispatcher& dispatcher_;
   JobTable& jobs_;
   JobFilms& films_;
-  core::Mutex loading_;  ///< held while a job's films are read, before the state lock
   core::Mutex mutex_;
   core::CondVar tried_;
   size_t not_tried_ HYADES_GUARDED_BY(mutex_) = 0;  ///< of recover_all()'s

@@ -158,6 +158,17 @@ uint64_t FilmLog::durable() const {
   return durable_;
 }
 
+Result<std::vector<std::byte>> FilmLog::read(const RecordPlace& place, bool& damaged) const {
+  damaged = false;
+  const std::string file = path(segment_name({place.segment, place.snapshot}));
+  const Result<std::unique_ptr<LogReader>> reader = files_.open(file);
+  if (!reader) return reader.error();
+  std::vector<std::byte> payload;
+  Status read = read_record(**reader, place.offset, salt_, payload, damaged);
+  if (!read) return read.error().in(file);
+  return payload;
+}
+
 void FilmLog::commit_loop() {
   using Clock = std::chrono::steady_clock;
   const core::MutexLock hold(mutex_);

@@ -42,6 +42,13 @@ struct FilmLogOptions {
   uint64_t salt = 0;     ///< of a new log's checksums; 0: a random one
 };
 
+/// Where a record of a log stands, until the log is compacted.
+struct RecordPlace {
+  uint64_t segment = 0;  ///< its index
+  bool snapshot = false;
+  uint64_t offset = 0;  ///< of the record's header
+};
+
 /// What replay() found. Damage costs rendering again, never a wrong picture.
 struct ReplayReport {
   uint64_t records = 0;               ///< given to the visitor and accepted
@@ -83,6 +90,14 @@ class FilmLog {
   /// read or was written by a newer version.
   core::Result<ReplayReport> replay(const Visitor& visitor);
 
+  /// Where the record stands that replay() gives to its visitor, or that the sink of compact() has
+  /// just taken.
+  const RecordPlace& place() const { return place_; }
+
+  /// Reads the record at `place` again. `damaged`: it is there no more as it was written; else it
+  /// may be read another time.
+  core::Result<std::vector<std::byte>> read(const RecordPlace& place, bool& damaged) const;
+
   /// Queues a record (1 byte to kMaxRecordBytes) and returns its number; durable later. Refused
   /// when more than max_pending_bytes wait (the disk is full or too slow).
   core::Result<uint64_t> append(std::vector<std::byte> record);
@@ -103,8 +118,10 @@ class FilmLog {
 
   /// Replaces all records up to number `through` (which must be durable) by those that `write` puts
   /// into its sink, atomically: a crash leaves the old ones or the new ones. Appending goes on
-  /// meanwhile; records after `through` stay. Returns when it is durable.
-  core::Status compact(uint64_t through, const std::function<core::Status(const Sink&)>& write);
+  /// meanwhile; records after `through` stay. Returns when it is durable. `replaced` is called when
+  /// the new ones stand, before the old ones go; whether or not these can be removed.
+  core::Status compact(uint64_t through, const std::function<core::Status(const Sink&)>& write,
+                       const std::function<void()>& replaced = {});
 
   static constexpr uint64_t kMaxRecordBytes = uint64_t{1} << 31U;
 
@@ -145,6 +162,7 @@ class FilmLog {
   LogFiles& files_;
   std::unique_ptr<LogLock> lock_;
   uint64_t salt_ = 0;
+  RecordPlace place_;
 
   /// What appending threads share with the commit thread.
   mutable core::Mutex mutex_;

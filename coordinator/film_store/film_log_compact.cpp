@@ -21,7 +21,8 @@ using core::Error;
 using core::Result;
 using core::Status;
 
-Status FilmLog::compact(uint64_t through, const std::function<Status(const Sink&)>& write) {
+Status FilmLog::compact(uint64_t through, const std::function<Status(const Sink&)>& write,
+                        const std::function<void()>& replaced) {
   const core::MutexLock one(compact_mutex_);
   {
     const core::MutexLock hold(mutex_);
@@ -49,6 +50,7 @@ Status FilmLog::compact(uint64_t through, const std::function<Status(const Sink&
   if (Status s = files_.rename(unfinished, file); !s) return s;
   if (Status s = files_.sync_folder(folder_); !s) return s;
   core::failpoint("snapshot-renamed");
+  if (replaced) replaced();
   // The file being written ends here, so that it can go once its records are covered, too.
   active_.reset();
   const auto at = std::find_if(segments_.begin(), segments_.end(),
@@ -66,10 +68,13 @@ Status FilmLog::write_snapshot(const std::string& file, uint64_t index, uint64_t
   const auto header = encode_segment_header({kSegmentVersion, true, index, through, salt_});
   if (Status s = (*writer)->write(header); !s) return s;
   uint64_t number = 0;
+  uint64_t end = header.size();
   const Sink sink = [&](std::span<const std::byte> record) -> Status {
     if (record.empty() || record.size() > kMaxRecordBytes) {
       return Error{fmt::format("a record of {} bytes does not fit", record.size())};
     }
+    place_ = {index, true, end};
+    end += kRecordHeaderBytes + record.size();
     if (Status s = (*writer)->write(encode_record_header(record, ++number, salt_)); !s) return s;
     return (*writer)->write(record);
   };

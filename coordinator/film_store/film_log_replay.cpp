@@ -167,6 +167,7 @@ bool FilmLog::replay_segment(Segment& segment, bool last, Replay& state) {
         continue;
       }
     }
+    place_ = {segment.index, segment.snapshot, scanner.offset()};
     if (const Status taken = state.visitor(scanner.payload()); !taken) {
       note(state.report, fmt::format("{}: record {} was refused: {}", file, scanner.sequence(),
                                      taken.error().message));

@@ -103,10 +103,22 @@ core::Film cut_film(const core::Film& film, std::span<const core::Unit> units) {
 
 constexpr size_t kHead = 2;
 constexpr size_t kFrameAndKey = 4 + sizeof(FrameKey);
+constexpr size_t kDeliveredHead = kFrameAndKey + sizeof(Digest) + 4;  ///< before the class
+
+/// The film's bytes in a record of kind delivered, of which the head has been read.
+core::Result<std::span<const std::byte>> film_of_delivered(std::span<const std::byte> bytes) {
+  if (bytes.size() < kDeliveredHead) return core::Error{"a delivered film's record is too short"};
+  const uint32_t length = get(bytes, kDeliveredHead - 4);
+  if (length > bytes.size() - kDeliveredHead) {
+    return core::Error{"a delivered film's class is cut off"};
+  }
+  return bytes.subspan(kDeliveredHead + length);
+}
 
 class Reader {
  public:
-  Reader(LogContents& contents, const LogFilter& filter) : contents_(contents), filter_(filter) {}
+  Reader(LogContents& contents, const LogFilter& filter, const FilmLog& log)
+      : contents_(contents), filter_(filter), log_(log) {}
 
   core::Status read(std::span<const std::byte> record) {
     if (record.size() < kHead + 4) return core::Error{"a record is too short"};
@@ -125,8 +137,7 @@ class Reader {
         return read_delivered(record.subspan(kHead));
       case Kind::begun_again:
         contents_.finished.erase(static_cast<int32_t>(get(record, kHead)));
-        contents_.films.erase(static_cast<int32_t>(get(record, kHead)));
-        contents_.units.erase(static_cast<int32_t>(get(record, kHead)));
+        forget(static_cast<int32_t>(get(record, kHead)));
         return {};
       case Kind::tile_voided:
         return read_tile_voided(record.subspan(kHead));
@@ -160,6 +171,10 @@ class Reader {
     contents_.finished.erase(frame);
     unfinished_.insert(frame);
     if (!is_wanted(frame) || !has_key(frame, get_key(bytes, 4))) return {};
+    if (filter_.places) {
+      const auto units = note_place(frame, bytes.subspan(kFrameAndKey));
+      return units ? core::Status() : units.error();
+    }
     auto film = core::decode_film(bytes.subspan(kFrameAndKey));
     if (!film) return film.error();
     const bool splats = film->layout().layers.splats;
@@ -171,28 +186,71 @@ class Reader {
   }
 
   core::Status read_delivered(std::span<const std::byte> bytes) {
-    constexpr size_t kFixed = kFrameAndKey + sizeof(Digest) + 4;
-    if (bytes.size() < kFixed) return core::Error{"a delivered film's record is too short"};
+    const auto packed = film_of_delivered(bytes);
+    if (!packed) return packed.error();
     const auto frame = static_cast<int32_t>(get(bytes, 0));
     const Digest digest = get_key(bytes, kFrameAndKey);
-    const uint32_t length = get(bytes, kFixed - 4);
-    if (length > bytes.size() - kFixed) return core::Error{"a delivered film's class is cut off"};
-    std::string worker_class(length, '\0');
-    for (size_t i = 0; i < length; ++i) worker_class[i] = std::to_integer<char>(bytes[kFixed + i]);
+    std::string worker_class(bytes.size() - kDeliveredHead - packed->size(), '\0');
+    for (size_t i = 0; i < worker_class.size(); ++i) {
+      worker_class[i] = std::to_integer<char>(bytes[kDeliveredHead + i]);
+    }
     contents_.finished.erase(frame);
     unfinished_.insert(frame);
     if (!is_wanted(frame) || !has_key(frame, get_key(bytes, 4))) return {};
-    auto film = core::decode_film(bytes.subspan(kFixed + length));
+    if (filter_.places) {
+      const auto units = note_place(frame, *packed);
+      if (!units) return units.error();
+      note_units(*units, digest, worker_class);
+      return {};
+    }
+    auto film = core::decode_film(*packed);
     if (!film) return film.error();
     auto& whole = contents_.films[frame];
     if (!whole) whole = blank_like(*film);
     if (core::Status merged = whole->merge(*film); !merged) return merged;
     if (contents_.cut.tile_size < 1) return {};
-    const auto units = units_of(frame, *film, filter_.region, contents_.cut.tile_size);
-    for (const core::Unit& unit : units) {
-      contents_.units[frame].push_back({unit, units.size() == 1 ? digest : Digest{}, worker_class});
-    }
+    note_units(units_of(frame, film->coverage(), filter_.region, contents_.cut.tile_size), digest,
+               worker_class);
     return {};
+  }
+
+  void note_units(const std::vector<core::Unit>& units, const Digest& digest,
+                  const std::string& worker_class) {
+    for (const core::Unit& unit : units) {
+      contents_.units[unit.frame].push_back(
+          {unit, units.size() == 1 ? digest : Digest{}, worker_class});
+    }
+  }
+
+  /// Takes where the film stands that is being read, if it could be merged with those before;
+  /// returns its units.
+  core::Result<std::vector<core::Unit>> note_place(int32_t frame,
+                                                   std::span<const std::byte> packed) {
+    if (contents_.cut.tile_size < 1 || contents_.cut.region != filter_.region) {
+      return core::Error{"a film of another region"};
+    }
+    const auto coverage = core::decode_coverage(packed);
+    if (!coverage) return coverage.error();
+    auto units = units_of(frame, *coverage, filter_.region, contents_.cut.tile_size);
+    Tiles& tiles = tiles_[frame];
+    for (const core::Unit& unit : units) {
+      if (tiles[{unit.tile.x0, unit.tile.y0}].overlap({unit.tile, unit.batches})) {
+        return core::Error{"a film overlaps those before"};
+      }
+    }
+    for (const core::Unit& unit : units) {
+      tiles[{unit.tile.x0, unit.tile.y0}].add({unit.tile, unit.batches});
+    }
+    contents_.places[frame].push_back(log_.place());
+    return units;
+  }
+
+  /// The frame's films count no more.
+  void forget(int32_t frame) {
+    contents_.films.erase(frame);
+    contents_.units.erase(frame);
+    contents_.places.erase(frame);
+    tiles_.erase(frame);
   }
 
   core::Status read_tile_voided(std::span<const std::byte> bytes) {
@@ -200,14 +258,22 @@ class Reader {
     const auto frame = static_cast<int32_t>(get(bytes, 0));
     const core::PixelRect tile = get_rect(bytes, 4);
     const auto film = contents_.films.find(frame);
-    if (film == contents_.films.end()) return {};
-    film->second->erase(tile);
+    const auto places = contents_.places.find(frame);
+    if (film != contents_.films.end()) film->second->erase(tile);
+    if (places != contents_.places.end()) {
+      places->second.push_back(log_.place());
+      Tiles& left = tiles_[frame];
+      left.erase({tile.x0, tile.y0});
+      if (left.empty()) contents_.places.erase(places);
+    }
     const auto units = contents_.units.find(frame);
     if (units != contents_.units.end()) {
       std::erase_if(units->second, [&](const AcceptedUnit& u) { return u.unit.tile == tile; });
       if (units->second.empty()) contents_.units.erase(units);
     }
-    if (film->second->coverage().volume() == 0) contents_.films.erase(film);
+    if (film != contents_.films.end() && film->second->coverage().volume() == 0) {
+      contents_.films.erase(film);
+    }
     return {};
   }
 
@@ -223,8 +289,7 @@ class Reader {
       if (finished.region != filter_.region) return {};
     }
     contents_.finished[frame] = finished;
-    contents_.films.erase(frame);
-    contents_.units.erase(frame);
+    forget(frame);
     return {};
   }
 
@@ -278,6 +343,10 @@ class Reader {
 
   LogContents& contents_;
   const LogFilter& filter_;
+  const FilmLog& log_;
+  /// What films hold that stay where they are: of each tile, by where it begins.
+  using Tiles = std::map<std::pair<int32_t, int32_t>, core::Coverage>;
+  std::map<int32_t, Tiles> tiles_;
   std::map<int32_t, FrameKey> keys_;  ///< of the frames met
   std::optional<int32_t> other_pixels_;
   std::set<int32_t> unfinished_;
@@ -303,9 +372,28 @@ std::vector<std::byte> encode_unit(int32_t frame, const FrameKey& key, const cor
   return out;
 }
 
-core::Result<core::Film> decode_unit(std::span<const std::byte> record) {
-  if (record.size() < kHead + kFrameAndKey) return core::Error{"a film's record is too short"};
-  return core::decode_film(record.subspan(kHead + kFrameAndKey), {.max_bytes = UINT64_MAX});
+core::Status merge_record(std::span<const std::byte> record, const core::PixelRect& region,
+                          std::shared_ptr<core::Film>& whole) {
+  if (record.size() < kHead + kFrameAndKey) {
+    const bool voids =
+        record.size() == kHead + 20 && record[0] == static_cast<std::byte>(Kind::tile_voided);
+    if (!voids) return core::Error{"a record of another kind"};
+    if (whole) whole->erase(get_rect(record, kHead + 4));
+    return {};
+  }
+  const auto packed = record[0] == static_cast<std::byte>(Kind::delivered)
+                          ? film_of_delivered(record.subspan(kHead))
+                          : record.subspan(kHead + kFrameAndKey);
+  if (!packed) return packed.error();
+  auto film = core::decode_film(*packed, {.max_bytes = UINT64_MAX});
+  if (!film) return film.error();
+  if (whole) return whole->merge(*film);
+  if (film->window() == region) {
+    whole = std::make_shared<core::Film>(std::move(*film));
+    return {};
+  }
+  whole = std::make_shared<core::Film>(film->layout(), region, film->splats().region());
+  return whole->merge(*film);
 }
 
 std::vector<std::byte> encode_delivered(const AcceptedUnit& unit, const FrameKey& key,
@@ -350,7 +438,7 @@ std::vector<std::byte> encode_finished(int32_t frame, const FinishedRecord& fini
 
 core::Result<LogContents> read_log(FilmLog& log, const LogFilter& filter) {
   LogContents contents;
-  Reader reader(contents, filter);
+  Reader reader(contents, filter, log);
   auto report = log.replay([&](std::span<const std::byte> record) { return reader.read(record); });
   if (!report) return report.error();
   contents.bytes = report->bytes;
@@ -369,10 +457,10 @@ core::Result<LogContents> read_log(FilmLog& log, const LogFilter& filter) {
   return contents;
 }
 
-std::vector<core::Unit> units_of(int32_t frame, const core::Film& film,
+std::vector<core::Unit> units_of(int32_t frame, const core::Coverage& coverage,
                                  const core::PixelRect& region, int32_t tile_size) {
   std::vector<core::Unit> units;
-  for (const core::CoverageBox& box : film.coverage().boxes()) {
+  for (const core::CoverageBox& box : coverage.boxes()) {
     for (int32_t y = tile_begin(box.tile.y0, tile_size); y < box.tile.y1; y += tile_size) {
       for (int32_t x = tile_begin(box.tile.x0, tile_size); x < box.tile.x1; x += tile_size) {
         const core::PixelRect tile =
@@ -395,7 +483,7 @@ bool may_be_too_large(const core::Film& film) {
 core::Status write_film(int32_t frame, const FrameKey& key, const core::Film& film,
                         const CutRecord& cut, const std::string& worker_class,
                         const FilmLog::Sink& sink) {
-  const std::vector<core::Unit> units = units_of(frame, film, cut.region, cut.tile_size);
+  const std::vector<core::Unit> units = units_of(frame, film.coverage(), cut.region, cut.tile_size);
   if (units.empty()) return {};
   const auto put = [&](const core::Unit& first, const core::Film& part) {
     return sink(worker_class.empty() ? encode_unit(frame, key, part)

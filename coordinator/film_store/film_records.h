@@ -45,8 +45,10 @@ struct FinishedRecord {
 std::vector<std::byte> encode_cut(const CutRecord& cut);
 /// A film of some tiles and batches of a frame.
 std::vector<std::byte> encode_unit(int32_t frame, const FrameKey& key, const core::Film& film);
-/// The film of an encode_unit() record that this process has written.
-core::Result<core::Film> decode_unit(std::span<const std::byte> record);
+/// Adds what a record of one frame (a film, or that a tile of it is void) says to the film that
+/// those before it made: `whole`, null before the first, with the frame's region as its window.
+core::Status merge_record(std::span<const std::byte> record, const core::PixelRect& region,
+                          std::shared_ptr<core::Film>& whole);
 /// A film as a worker delivered it: `film` is what film_codec.h packed. Of `unit` frame, digest and
 /// class are kept; the film says the rest.
 std::vector<std::byte> encode_delivered(const AcceptedUnit& unit, const FrameKey& key,
@@ -63,6 +65,9 @@ struct LogContents {
   /// Of the frames that were asked for: with this key and region; of others: whatever they have.
   std::map<int32_t, FinishedRecord> finished;
   std::map<int32_t, std::shared_ptr<core::Film>> films;  ///< of the other frames, merged
+  /// With LogFilter::places, instead of the films: their records, in order, and those of tiles that
+  /// became void.
+  std::map<int32_t, std::vector<RecordPlace>> places;
   /// The units of these films, where workers delivered them. A digest is zero where it is not known
   /// any more.
   std::map<int32_t, std::vector<AcceptedUnit>> units;
@@ -85,6 +90,9 @@ struct LogFilter {
   /// How many batches a tile has was decided by all of its pixels: of films of another region only
   /// tiles are taken that are the same there.
   bool judged = false;
+  /// Films that workers have delivered are not read: it is told where they stand. Those of another
+  /// region are refused.
+  bool places = false;
 };
 
 /// Reads all of `log`, which has just been opened, merging the films of the frames of `filter`;
@@ -93,7 +101,7 @@ struct LogFilter {
 core::Result<LogContents> read_log(FilmLog& log, const LogFilter& filter);
 
 /// The units that a film holds: its coverage, cut along the tiles; those of a tile stand together.
-std::vector<core::Unit> units_of(int32_t frame, const core::Film& film,
+std::vector<core::Unit> units_of(int32_t frame, const core::Coverage& coverage,
                                  const core::PixelRect& region, int32_t tile_size);
 
 /// Whether a record of all of the film may become longer than a log takes: one with splats is not

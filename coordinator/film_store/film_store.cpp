@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <mutex>
 #include <span>
 #include <utility>
 #include <variant>
@@ -22,8 +23,11 @@ constexpr Duration kTryAgain = std::chrono::milliseconds(1100);
 /// After a compaction has failed.
 constexpr Duration kCompactAgain = std::chrono::seconds(5);
 
-/// How many complete films whose outputs could not be written are kept for another run. They cost
-/// memory; more would have to be rendered again.
+/// While a film that is set aside cannot be read.
+constexpr Duration kReadAgain = std::chrono::milliseconds(50);
+
+/// How many complete films whose outputs could not be written are kept for another run. They may
+/// cost memory; more would have to be rendered again.
 constexpr size_t kUnfinishedFilms = 2;
 
 /// Whose log it is. What its films are of stands beside each of them.
@@ -106,7 +110,9 @@ core::Result<LogContents> FilmStore::open() {
                          set_.region,
                          set_.samples,
                          options_.frame_key,
-                         set_.judged};
+                         set_.judged,
+                         options_.kept_aside};
+  const auto alone = hold_whole_records();
   auto contents = read_log(*log_, filter);
   if (!contents) return contents.error().in(options_.folder);
   std::string useless = contents->other_picture;
@@ -131,6 +137,7 @@ core::Result<LogContents> FilmStore::open() {
   }
   finished_ = contents->finished;
   films_ = contents->films;
+  for (const auto& [frame, places] : contents->places) aside_.leave(*log_, frame, places);
   disputed_ = contents->disputed;
   // What of it is of use is not known until it is rewritten.
   useless_bytes_ = contents->bytes;
@@ -287,6 +294,7 @@ void FilmStore::run() {
 
     append(std::move(items));
     settle(durable);
+    set_unfinished_aside();
     if (try_again_at_ && now() >= *try_again_at_) {
       try_again_at_.reset();
       listener_.try_again();
@@ -419,14 +427,22 @@ core::Status FilmStore::set_aside(int32_t frame) {
   const auto it = films_.find(frame);
   if (it == films_.end()) return {};
   if (!logs() || tile_size_ < 1) return core::Error{"films are kept in memory alone"};
-  if (core::Status put = aside_.put(frame, *it->second, tile_size_); !put) return put;
+  const auto alone = hold_whole_records();
+  core::Status put = aside_.put(frame, *it->second, tile_size_, key_of(frame), class_of(frame));
+  if (!put) return put;
   films_.erase(it);
   return {};
 }
 
 bool FilmStore::fetch(int32_t frame) {
   if (!is_aside(frame)) return true;
-  auto film = aside_.read(frame);
+  const auto read = [&] {
+    const auto alone = hold_whole_records();
+    return aside_.read(frame);
+  };
+  const TimePoint end = now() + options_.patience;
+  auto film = read();
+  while (!film && !aside_.is_damaged() && wait_to_read(end)) film = read();
   aside_.remove(frame);
   if (!film) {
     // What comes would else be taken for all of it.
@@ -438,15 +454,52 @@ bool FilmStore::fetch(int32_t frame) {
 }
 
 void FilmStore::forget(int32_t frame, FrameEnd end) {
-  aside_.remove(frame);
   if (const auto bytes = frame_bytes_.extract(frame)) useless_bytes_ += bytes.mapped();
   const auto it = films_.find(frame);
+  if (end == FrameEnd::unwritten && log_ && unfinished_.size() < kUnfinishedFilms) {
+    if (it != films_.end()) {
+      unfinished_anew_ = true;
+      unfinished_[frame] = it->second;
+      films_.erase(it);
+    } else if (is_aside(frame)) {
+      unfinished_[frame] = nullptr;
+    }
+    return;
+  }
+  aside_.remove(frame);
   if (it == films_.end()) return;
   if (end == FrameEnd::finished) classes_.erase(frame);
-  if (end == FrameEnd::unwritten && log_ && unfinished_.size() < kUnfinishedFilms) {
-    unfinished_.insert(*it);
-  }
   films_.erase(it);
+}
+
+std::string FilmStore::class_of(int32_t frame) const {
+  const auto known = classes_.find(frame);
+  return known == classes_.end() ? std::string() : known->second;
+}
+
+/// Where records of all of a film are written or read: until the result goes nobody else does so.
+std::unique_lock<core::Mutex> FilmStore::hold_whole_records() const {
+  if (!set_.splats || options_.whole_records == nullptr) return {};
+  return std::unique_lock(*options_.whole_records);
+}
+
+/// Films that nobody counts any more leave memory, if they can.
+void FilmStore::set_unfinished_aside() {
+  if (!std::exchange(unfinished_anew_, false)) return;
+  for (auto& [frame, film] : unfinished_) {
+    if (!film) continue;
+    films_[frame] = film;
+    if (set_aside(frame)) film.reset();
+    films_.erase(frame);
+  }
+}
+
+/// Waits for a moment. Whether it is to be tried again.
+bool FilmStore::wait_to_read(TimePoint end) {
+  const TimePoint again = std::min(now() + kReadAgain, end);
+  const core::MutexLock lock(mutex_);
+  while (!draining_ && now() < again) wake_.wait_until(mutex_, again);
+  return !draining_ && now() < end;
 }
 
 /// Rewrites the log when films of finished frames, and units that could lie in it merged, fill it;
@@ -461,7 +514,7 @@ void FilmStore::compact_if_worthwhile(bool room_wanted) {
   }
   for (const auto* films : {&films_, &unfinished_}) {
     for (const auto& [frame, film] : *films) {
-      if (may_be_too_large(*film)) return;
+      if (film && may_be_too_large(*film)) return;
     }
   }
   for (const auto& [frame, put] : aside_.frames()) {
@@ -469,8 +522,12 @@ void FilmStore::compact_if_worthwhile(bool room_wanted) {
   }
   const uint64_t snapshot_before = std::exchange(snapshot_bytes_, 0);
   std::map<int32_t, uint64_t> frames_before = std::exchange(frame_bytes_, {});
+  Places places;
   const core::Status done = log_->compact(
-      settled_sequence_, [this](const FilmLog::Sink& sink) { return write_snapshot(sink); });
+      settled_sequence_, [&](const FilmLog::Sink& sink) { return write_snapshot(sink, places); },
+      [&] {
+        for (auto& [frame, records] : places) aside_.move(frame, std::move(records));
+      });
   if (done) {
     log_bytes_ = useless_bytes_ = 0;
     others_films_ = false;
@@ -486,7 +543,7 @@ void FilmStore::compact_if_worthwhile(bool room_wanted) {
   trouble_ = done.error().message;
 }
 
-core::Status FilmStore::write_snapshot(const FilmLog::Sink& sink) {
+core::Status FilmStore::write_snapshot(const FilmLog::Sink& sink, Places& places) {
   const auto put = [&](std::span<const std::byte> bytes) {
     snapshot_bytes_ += bytes.size();
     return sink(bytes);
@@ -500,29 +557,40 @@ core::Status FilmStore::write_snapshot(const FilmLog::Sink& sink) {
   std::map<int32_t, std::shared_ptr<core::Film>> films = films_;
   films.insert(unfinished_.begin(), unfinished_.end());
   for (const auto& [frame, film] : films) {
-    if (status) status = put_film(frame, *film, put);
+    if (status && film) status = put_film(frame, *film, put);
   }
   for (const auto& [frame, known] : aside_.frames()) {
-    if (!status) break;
-    const auto film = aside_.read(frame);
-    if (!film) return film.error();
-    if (*film) status = put_film(frame, **film, put);
+    if (status) status = copy_aside(frame, put, places);
   }
   return status;
 }
 
-core::Status FilmStore::put_film(int32_t frame, const core::Film& film, const FilmLog::Sink& sink) {
-  const auto known = classes_.find(frame);
-  uint64_t& of_frame = frame_bytes_[frame];
-  const auto put_part = [&](std::span<const std::byte> bytes) -> core::Status {
-    of_frame += bytes.size();
-    if (core::Status done = sink(bytes); !done) return done;
-    const core::MutexLock lock(mutex_);
-    if (draining_) return core::Error{"the run ends"};
+/// Copies the records of a film that is set aside, so that it does not come into memory.
+core::Status FilmStore::copy_aside(int32_t frame, const FilmLog::Sink& sink, Places& places) {
+  const auto alone = hold_whole_records();
+  const bool in_log = !aside_.frames().at(frame).places.empty();
+  return aside_.copy(frame, [&](std::span<const std::byte> record) -> core::Status {
+    if (core::Status done = count(frame, record, sink); !done) return done;
+    if (in_log) places[frame].push_back(log_->place());
     return {};
-  };
+  });
+}
+
+core::Status FilmStore::put_film(int32_t frame, const core::Film& film, const FilmLog::Sink& sink) {
+  const auto alone = hold_whole_records();
   return write_film(frame, key_of(frame), film, {set_.region, tile_size_, set_.samples},
-                    known == classes_.end() ? std::string() : known->second, put_part);
+                    class_of(frame),
+                    [&](std::span<const std::byte> record) { return count(frame, record, sink); });
+}
+
+/// Puts a record of the frame into a snapshot, which ends when the run does.
+core::Status FilmStore::count(int32_t frame, std::span<const std::byte> record,
+                              const FilmLog::Sink& sink) {
+  frame_bytes_[frame] += record.size();
+  if (core::Status done = sink(record); !done) return done;
+  const core::MutexLock lock(mutex_);
+  if (draining_) return core::Error{"the run ends"};
+  return {};
 }
 
 }  // namespace hyades::coordinator

@@ -7,7 +7,9 @@
 #include <functional>
 #include <map>
 #include <memory>
+#include <mutex>
 #include <optional>
+#include <span>
 #include <string>
 #include <thread>
 #include <vector>
@@ -29,6 +31,7 @@ struct FilmSet {
   core::PixelRect region;  ///< of every frame
   uint32_t samples = 1;    ///< per pixel, of the whole job
   bool judged = false;     ///< its tiles are judged: see LogFilter
+  bool splats = false;     ///< the films have some
 };
 
 /// What became of a frame that is over.
@@ -53,6 +56,8 @@ struct FilmStoreOptions {
   /// many threads. All frames have the same key where it is empty.
   std::function<FrameKey(int32_t frame)> frame_key;
   KeptFilms kept = KeptFilms::erase;  ///< what the folder holds
+  /// Films that it holds are set aside from the start: none is in memory before it is fetched.
+  bool kept_aside = false;
   /// Films that may wait for the disk before those who hand them over wait too.
   uint64_t max_waiting_bytes = uint64_t{512} << 20U;
   /// The log is rewritten when it has grown by this much, and by as much as the films take.
@@ -60,6 +65,9 @@ struct FilmStoreOptions {
   /// The store gives up when nothing could be stored for this long.
   Duration patience = std::chrono::seconds(30);
   LogFiles* files = nullptr;  ///< the disk where null
+  /// Held while a record of all of a film is in memory beside that film, or without it: where
+  /// films have splats. So all stores that share it have one at a time. None where null.
+  core::Mutex* whole_records = nullptr;
   /// Called by the log's thread: so long took the disk to make a group of films durable.
   std::function<void(std::chrono::nanoseconds took)> on_sync{};
 };
@@ -130,7 +138,7 @@ class FilmStore {
   /// What has been merged of the frame; null where nothing has.
   std::shared_ptr<const core::Film> film(int32_t frame) const;
   /// The frame's film leaves memory, for a file of this run beside the log, and comes back with
-  /// fetch(), or when something is merged with it. On an error it stays.
+  /// fetch(), or when something is merged with it. On an error it stays in memory.
   core::Status set_aside(int32_t frame);
   /// Whether the frame's film is set aside.
   bool is_aside(int32_t frame) const { return aside_.contains(frame); }
@@ -138,7 +146,8 @@ class FilmStore {
   core::Result<std::shared_ptr<core::Film>> read_aside(int32_t frame) const {
     return aside_.read(frame);
   }
-  /// Has the frame's film in memory, if there is one. Whether that could be done.
+  /// Has the frame's film in memory, if there is one. Whether that could be done: where it cannot
+  /// be read it is tried again, for as long as FilmStoreOptions::patience.
   bool fetch(int32_t frame);
   /// The frame is over. A film whose outputs could not be written stays in the log for another run.
   void forget(int32_t frame, FrameEnd end);
@@ -154,6 +163,8 @@ class FilmStore {
     uint64_t sequence = 0;
   };
 
+  using Places = std::map<int32_t, std::vector<RecordPlace>>;
+
   /// Whether there is, or will be, a log.
   bool logs() const { return !options_.folder.empty(); }
   core::Status open_log(bool erase);
@@ -167,10 +178,16 @@ class FilmStore {
   void settle(uint64_t durable);
   void apply(const Record& record);
   void compact_if_worthwhile(bool room_wanted);
-  core::Status write_snapshot(const FilmLog::Sink& sink);
+  core::Status write_snapshot(const FilmLog::Sink& sink, Places& places);
   void release(uint64_t memory);
   LogFiles& files() const;
+  core::Status copy_aside(int32_t frame, const FilmLog::Sink& sink, Places& places);
   core::Status put_film(int32_t frame, const core::Film& film, const FilmLog::Sink& sink);
+  core::Status count(int32_t frame, std::span<const std::byte> record, const FilmLog::Sink& sink);
+  std::unique_lock<core::Mutex> hold_whole_records() const;
+  void set_unfinished_aside();
+  bool wait_to_read(TimePoint end);
+  std::string class_of(int32_t frame) const;
 
   const FilmSet set_;
   const FilmStoreOptions options_;
@@ -196,8 +213,9 @@ class FilmStore {
   FilmsAside aside_;                        ///< films that are set aside, and so not in films_
   std::map<int32_t, std::string> classes_;  ///< of frames, where workers delivered their films
   std::map<int32_t, FinishedRecord> finished_;
-  /// Complete films of frames whose outputs could not be written.
+  /// Complete films of frames whose outputs could not be written; null where they are set aside.
   std::map<int32_t, std::shared_ptr<core::Film>> unfinished_;
+  bool unfinished_anew_ = false;  ///< one of them may be set aside
   int32_t tile_size_ = 0;
   bool disputed_ = false;   ///< films may be wrong
   bool write_cut_ = false;  ///< the log is new

@@ -65,6 +65,23 @@ std::array<std::byte, kRecordHeaderBytes> encode_record_header(std::span<const s
   return bytes;
 }
 
+core::Status read_record(LogReader& reader, uint64_t offset, uint64_t salt,
+                         std::vector<std::byte>& payload, bool& damaged) {
+  damaged = false;
+  std::array<std::byte, kRecordHeaderBytes> header{};
+  if (core::Status read = reader.read(offset, header); !read) return read;
+  const uint64_t length = get<uint32_t>(header, 4);
+  damaged = get<uint32_t>(header, 0) != kRecordMagic ||
+            get<uint32_t>(header, 20) != record_header_crc(header, salt) ||
+            length > reader.size() - offset - kRecordHeaderBytes;
+  if (damaged) return core::Error{"the header of a record is damaged"};
+  payload.resize(length);
+  if (core::Status read = reader.read(offset + kRecordHeaderBytes, payload); !read) return read;
+  damaged = core::crc32c(payload) != get<uint32_t>(header, 16);
+  if (damaged) return core::Error{"a record is damaged"};
+  return {};
+}
+
 /// What cannot be read counts as zeros, which no checksum accepts.
 void SegmentScanner::read(uint64_t offset, std::span<std::byte> into) {
   if (!reader_.read(offset, into).ok()) std::fill(into.begin(), into.end(), std::byte{0});

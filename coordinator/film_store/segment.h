@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "coordinator/film_store/log_files.h"
+#include "core/base/result.h"
 
 /// The bytes of the film log's segment files (docs/film-log.md). All numbers are little-endian.
 namespace hyades::coordinator {
@@ -35,6 +36,11 @@ std::optional<SegmentHeader> decode_segment_header(std::span<const std::byte> by
 std::array<std::byte, kRecordHeaderBytes> encode_record_header(std::span<const std::byte> payload,
                                                                uint64_t sequence, uint64_t salt);
 
+/// Reads the payload of the record that begins at `offset` of a segment. `damaged`: it is read, but
+/// not what was written.
+core::Status read_record(LogReader& reader, uint64_t offset, uint64_t salt,
+                         std::vector<std::byte>& payload, bool& damaged);
+
 /// Reads a segment's records one after the other, in memory bounded by the largest record, over
 /// damaged and unreadable places.
 class SegmentScanner {
@@ -52,6 +58,8 @@ class SegmentScanner {
 
   /// The number of the record that next() found.
   uint64_t sequence() const { return sequence_; }
+  /// Where that record begins, with its header.
+  uint64_t offset() const { return good_end_ - kRecordHeaderBytes - payload_.size(); }
   /// The bytes of that record; valid until next() is called again.
   std::span<const std::byte> payload() const { return payload_; }
 

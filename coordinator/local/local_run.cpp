@@ -113,7 +113,8 @@ void LocalRun::restore(const LogContents& contents, int32_t frame, RestoredJob& 
     restored.finished.push_back(frame);
     progress_.samples_done += samples_per_frame();
   } else if (const auto film = contents.films.find(frame); film != contents.films.end()) {
-    for (core::Unit unit : units_of(frame, *film->second, plan_.region, plan_.tile_size)) {
+    for (core::Unit unit :
+         units_of(frame, film->second->coverage(), plan_.region, plan_.tile_size)) {
       unit.batches.first -= batches_of(plan_).first;
       restored.accepted.push_back({unit, Digest{}, {}});
       frame_samples_[frame] += samples_of(unit);

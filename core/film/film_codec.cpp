@@ -259,6 +259,13 @@ Result<Film> decode(std::span<const std::byte> bytes, const FilmLimits& limits) 
 
 }  // namespace
 
+Result<Coverage> decode_coverage(std::span<const std::byte> bytes) {
+  ByteReader in(bytes);
+  const Result<Beginning> begun = read_beginning(in);
+  if (!begun) return begun.error();
+  return read_coverage(in, {}, UINT64_MAX);
+}
+
 uint64_t memory_to_decode(std::span<const std::byte> bytes) {
   ByteReader in(bytes);
   const Result<Beginning> begun = read_beginning(in);

@@ -28,6 +28,10 @@ std::vector<std::byte> encode_film(const Film& film);
 /// say.
 Result<Film> decode_film(std::span<const std::byte> bytes, const FilmLimits& limits = {});
 
+/// What the film of bytes of encode_film() holds, by what stands at their beginning; they are not
+/// looked at otherwise.
+Result<Coverage> decode_coverage(std::span<const std::byte> bytes);
+
 /// The most memory [bytes] that decode_film() takes for these, by what stands at their beginning;
 /// where that is wrong they are refused before more is taken. UINT64_MAX where ids of objects or
 /// materials follow: how many there are stands behind all else. Of bytes that are no film: 0.

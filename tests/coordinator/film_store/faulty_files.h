@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <atomic>
 #include <cstring>
 #include <map>
 #include <memory>
@@ -34,6 +35,8 @@ class FaultyFiles final : public LogFiles {
   void fail_next_write_after(size_t bytes) { write_budget_ = bytes; }
   /// The next truncation fails.
   void fail_next_truncate() { fail_truncate_ = true; }
+  /// No file can be opened to be read, as when the process has too many.
+  void refuse_to_open(bool refuse) { refuse_to_open_ = refuse; }
   /// All files together may hold this many bytes.
   void set_capacity(uint64_t bytes) { capacity_ = bytes; }
 
@@ -119,6 +122,7 @@ class FaultyFiles final : public LogFiles {
     const std::lock_guard<std::mutex> hold(mutex_);
     const auto found = names_.find(path);
     if (found == names_.end()) return core::Error{path + " does not exist"};
+    if (refuse_to_open_) return core::Error{path + ": too many open files"};
     return std::unique_ptr<LogReader>(std::make_unique<Reader>(found->second->bytes));
   }
 
@@ -249,6 +253,7 @@ class FaultyFiles final : public LogFiles {
   uint64_t fail_from_ = UINT64_MAX;
   uint64_t capacity_ = UINT64_MAX;
   size_t write_budget_ = SIZE_MAX;
+  std::atomic<bool> refuse_to_open_{false};
   bool fail_sync_ = false;
   bool fail_truncate_ = false;
 };

@@ -1,8 +1,6 @@
 // Films that leave memory and come back, as the film store of a job has it.
-#include <algorithm>
 #include <utility>
 
-#include "coordinator/scheduler/tile_grid.h"
 #include "tests/coordinator/scheduler/simulated_world.h"
 
 namespace hyades::coordinator {
@@ -51,7 +49,7 @@ void SimulatedWorld::set_aside(SimJob& job, const SetAside& a, bool refuse) {
   }
   bool done = true;
   if (frame.in_memory) {
-    done = job.disk->set_aside(a.frame, frame.film).ok();
+    done = job.disk->set_aside(a.frame, frame.film, frame.worker_class).ok();
     ++(done ? aside.done : aside.refused);
   }
   if (done && frame.in_memory) {
@@ -119,25 +117,14 @@ void SimulatedWorld::tell_of_lost_films() {
   }
 }
 
-/// As a coordinator that begins: films of paused jobs, and those that have no room, do not stay.
+/// As a coordinator that begins: no film comes into memory by itself.
 void SimulatedWorld::set_aside_at_start(SimJob& job) {
   job.stored.set_aside.clear();
-  const uint64_t most = options_.film_memory;
-  uint64_t room = job.paused ? 0 : most - std::min(scheduler_->films(), most);
-  const uint64_t all =
-      uint64_t{TileGrid(job.plan.region, job.plan.tile_size).size()} * job.plan.batches;
   for (auto& [number, frame] : job.frames) {
     if (frame.over) forget_film(job, frame, number);
-    if (!frame.in_memory || frame.batches.size() == all) continue;
-    if (job.plan.film_bytes <= room) {
-      room -= job.plan.film_bytes;
-    } else if (job.disk->set_aside(number, frame.film)) {
-      ++aside.at_start;
-      frame.digest = frame.film.digest();
-      frame.film = job.disk->blank();
-      frame.in_memory = false;
-      job.stored.set_aside.push_back(number);
-    }
+    if (!job.disk->is_aside(number)) continue;
+    ++aside.at_start;
+    job.stored.set_aside.push_back(number);
   }
 }
 

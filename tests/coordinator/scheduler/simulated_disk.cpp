@@ -26,13 +26,15 @@ LogContents SimulatedDisk::open() {
   options.max_pending_bytes = 30'000;
   auto log = FilmLog::open(kFolder, "job", options);
   if (!log) throw "the film log does not open: " + log.error().message;
-  LogFilter filter{{plan_.frames.begin(), plan_.frames.end()}, plan_.region, samples(), {}};
+  LogFilter filter{
+      {plan_.frames.begin(), plan_.frames.end()}, plan_.region, samples(), {}, false, true};
   auto contents = read_log(**log, filter);
   if (!contents) throw "the film log cannot be read: " + contents.error().message;
   log_ = std::move(*log);
   aside_ = std::make_unique<FilmsAside>(files_, kFolder, plan_.region);
   if (const auto gone = aside_->remove_left(); !gone)
     throw "films stay aside: " + gone.error().message;
+  for (const auto& [frame, places] : contents->places) aside_->leave(*log_, frame, places);
   if (contents->empty) {
     const auto cut = log_->append(encode_cut({plan_.region, plan_.tile_size, samples()}));
     if (!cut) throw "the film log takes nothing: " + cut.error().message;
@@ -74,7 +76,8 @@ core::Result<uint64_t> SimulatedDisk::append(const Record& record, uint8_t mark)
 
 core::Status SimulatedDisk::compact(uint64_t through, const std::vector<int32_t>& finished,
                                     const std::map<int32_t, Frame>& frames) {
-  return log_->compact(through, [&](const FilmLog::Sink& sink) -> core::Status {
+  std::map<int32_t, std::vector<RecordPlace>> places;
+  const auto write = [&](const FilmLog::Sink& sink) -> core::Status {
     const CutRecord cut{plan_.region, plan_.tile_size, samples()};
     core::Status status = sink(encode_cut(cut));
     for (const int32_t frame : finished) {
@@ -86,16 +89,29 @@ core::Status SimulatedDisk::compact(uint64_t through, const std::vector<int32_t>
         status = write_film(number, {}, *frame.film, cut, frame.worker_class, sink);
         continue;
       }
-      const auto film = aside_->read(number);
-      if (!film) return film.error();
-      if (*film) status = write_film(number, {}, **film, cut, frame.worker_class, sink);
+      const bool in_log = !aside_->frames().at(number).places.empty();
+      status = aside_->copy(number, [&](std::span<const std::byte> record) {
+        const core::Status done = sink(record);
+        if (done && in_log) places[number].push_back(log_->place());
+        return done;
+      });
     }
     return status;
+  };
+  return log_->compact(through, write, [&] {
+    for (auto& [number, records] : places) aside_->move(number, std::move(records));
   });
 }
 
-core::Status SimulatedDisk::set_aside(int32_t frame, const core::Film& film) {
-  return aside_->put(frame, film, plan_.tile_size);
+core::Status SimulatedDisk::set_aside(int32_t frame, const core::Film& film,
+                                      const std::string& worker_class) {
+  return aside_->put(frame, film, plan_.tile_size, {}, worker_class);
+}
+
+std::string SimulatedDisk::digest_aside(int32_t frame) const {
+  const auto film = aside_->read(frame);
+  if (!film) throw "a film that is in the log cannot be read: " + film.error().message;
+  return *film ? (*film)->digest() : blank().digest();
 }
 
 core::Result<core::Film> SimulatedDisk::fetch(int32_t frame) {

@@ -44,9 +44,11 @@ class SimulatedDisk {
   // Films that are not in memory, as FilmStore keeps them.
 
   /// Writes the frame's film beside the log.
-  core::Status set_aside(int32_t frame, const core::Film& film);
+  core::Status set_aside(int32_t frame, const core::Film& film, const std::string& worker_class);
   bool is_aside(int32_t frame) const { return aside_ && aside_->contains(frame); }
   bool any_aside() const { return aside_ && !aside_->frames().empty(); }
+  /// What the film of a frame is that is aside.
+  std::string digest_aside(int32_t frame) const;
   /// The frame's film, which is not there any more.
   core::Result<core::Film> fetch(int32_t frame);
   void forget_aside(int32_t frame) { aside_->remove(frame); }

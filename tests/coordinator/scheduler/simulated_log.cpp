@@ -24,9 +24,9 @@ void SimulatedWorld::take_up(SimJob& job) {
   std::erase_if(job.disagreed,
                 [&](const core::Unit& u) { return !job.stored_units.contains(name(u)); });
   for (auto& [number, frame] : job.frames) {
-    const auto film = contents.films.find(number);
-    frame.film = film == contents.films.end() ? job.disk->blank() : *film->second;
-    frame.in_memory = film != contents.films.end();
+    frame.film = job.disk->blank();
+    frame.in_memory = false;
+    if (job.disk->is_aside(number)) frame.digest = job.disk->digest_aside(number);
     frame.lost = false;
     frame.asked_aside = 0;
     const auto units = contents.units.find(number);
