@@ -329,7 +329,7 @@ int finish_run(const RenderOptions& options, const core::Job& job,
   // After --frames the log may hold work on other frames, but for those of a part.
   if (!all_frames && !options.is_part() && options.crop.empty()) return 0;
   remove_kept(options, kept);
-  if (!videos) return 0;
+  if (!videos || !all_frames) return 0;
   // Not earlier: a resumed run would have missed them.
   for (const core::VideoDesc& video : job.videos) {
     core::remove_video_pictures(video, core::video_frames(job, options.folder, numbers));

@@ -42,9 +42,10 @@ void RetryQueue::wake_due(Time now) {
 }
 
 std::optional<uint64_t> RetryQueue::take_next(Time now) {
+  // Clang does not see that the lock is held where it is called.
   const auto best =
       shares_.next(ready_.begin(), ready_.end(), now,
-                   [&](uint64_t key) HYADES_REQUIRES(mutex_) -> const std::string* {
+                   [&](uint64_t key) HYADES_NO_THREAD_SAFETY_ANALYSIS -> const std::string* {
                      const std::string& owner = tasks_.at(key).owner;
                      const auto his = in_work_of_.find(owner);
                      return his != in_work_of_.end() && his->second >= of_one_ ? nullptr : &owner;

@@ -100,8 +100,9 @@ class Meant {
     // One that may not be listed may have links that are opened by their names.
     if (failed && !is_not_there(failed) && opens(folder_ / way)) {
       // Linux may count the links of a way twice where others rename files meanwhile.
-      const bool is_long = failed == std::errc::too_many_symbolic_link_levels;
-      return is_long ? too_many() : unknown(file_, way, failed);
+      if (failed != std::errc::too_many_symbolic_link_levels) return unknown(file_, way, failed);
+      left_ = 0;
+      return too_many();
     }
     return {};
   }
