@@ -65,19 +65,33 @@ std::array<std::byte, kRecordHeaderBytes> encode_record_header(std::span<const s
   return bytes;
 }
 
+namespace {
+
+/// Nothing where the bytes are no header, or of a record that does not end within `left` bytes.
+std::optional<RecordHeader> decode_record_header(
+    const std::array<std::byte, kRecordHeaderBytes>& bytes, uint64_t salt, uint64_t left) {
+  const RecordHeader header{get<uint32_t>(bytes, 4), get<uint64_t>(bytes, 8),
+                            get<uint32_t>(bytes, 16)};
+  const bool whole = get<uint32_t>(bytes, 0) == kRecordMagic &&
+                     get<uint32_t>(bytes, 20) == record_header_crc(bytes, salt) &&
+                     header.length <= FilmLog::kMaxRecordBytes && header.length <= left;
+  return whole ? std::optional(header) : std::nullopt;
+}
+
+}  // namespace
+
 core::Status read_record(LogReader& reader, uint64_t offset, uint64_t salt,
                          std::vector<std::byte>& payload, bool& damaged) {
   damaged = false;
   std::array<std::byte, kRecordHeaderBytes> header{};
   if (core::Status read = reader.read(offset, header); !read) return read;
-  const uint64_t length = get<uint32_t>(header, 4);
-  damaged = get<uint32_t>(header, 0) != kRecordMagic ||
-            get<uint32_t>(header, 20) != record_header_crc(header, salt) ||
-            length > reader.size() - offset - kRecordHeaderBytes;
+  const uint64_t begin = offset + kRecordHeaderBytes;
+  const auto told = decode_record_header(header, salt, reader.size() - begin);
+  damaged = !told;
   if (damaged) return core::Error{"the header of a record is damaged"};
-  payload.resize(length);
-  if (core::Status read = reader.read(offset + kRecordHeaderBytes, payload); !read) return read;
-  damaged = core::crc32c(payload) != get<uint32_t>(header, 16);
+  payload.resize(told->length);
+  if (core::Status read = reader.read(begin, payload); !read) return read;
+  damaged = core::crc32c(payload) != told->payload_crc;
   if (damaged) return core::Error{"a record is damaged"};
   return {};
 }
@@ -87,17 +101,11 @@ void SegmentScanner::read(uint64_t offset, std::span<std::byte> into) {
   if (!reader_.read(offset, into).ok()) std::fill(into.begin(), into.end(), std::byte{0});
 }
 
-std::optional<SegmentScanner::RecordHeader> SegmentScanner::header_at(uint64_t offset) {
+std::optional<RecordHeader> SegmentScanner::header_at(uint64_t offset) {
   if (offset + kRecordHeaderBytes > reader_.size()) return std::nullopt;
   std::array<std::byte, kRecordHeaderBytes> bytes{};
   read(offset, bytes);
-  const RecordHeader header{get<uint32_t>(bytes, 4), get<uint64_t>(bytes, 8),
-                            get<uint32_t>(bytes, 16)};
-  const bool whole = get<uint32_t>(bytes, 0) == kRecordMagic &&
-                     get<uint32_t>(bytes, 20) == record_header_crc(bytes, salt_) &&
-                     header.length <= FilmLog::kMaxRecordBytes &&
-                     offset + kRecordHeaderBytes + header.length <= reader_.size();
-  return whole ? std::optional(header) : std::nullopt;
+  return decode_record_header(bytes, salt_, reader_.size() - offset - kRecordHeaderBytes);
 }
 
 /// The next place from `from` on at which a record header stands whole.

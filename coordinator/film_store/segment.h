@@ -36,6 +36,13 @@ std::optional<SegmentHeader> decode_segment_header(std::span<const std::byte> by
 std::array<std::byte, kRecordHeaderBytes> encode_record_header(std::span<const std::byte> payload,
                                                                uint64_t sequence, uint64_t salt);
 
+/// What the header of a record says.
+struct RecordHeader {
+  uint32_t length = 0;  ///< of the payload, bytes
+  uint64_t sequence = 0;
+  uint32_t payload_crc = 0;
+};
+
 /// Reads the payload of the record that begins at `offset` of a segment. `damaged`: it is read, but
 /// not what was written.
 core::Status read_record(LogReader& reader, uint64_t offset, uint64_t salt,
@@ -69,11 +76,6 @@ class SegmentScanner {
   const std::vector<Gap>& gaps() const { return gaps_; }
 
  private:
-  struct RecordHeader {
-    uint32_t length = 0;
-    uint64_t sequence = 0;
-    uint32_t payload_crc = 0;
-  };
   void read(uint64_t offset, std::span<std::byte> into);
   std::optional<RecordHeader> header_at(uint64_t offset);
   std::optional<uint64_t> find_header(uint64_t from);
