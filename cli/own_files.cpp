@@ -10,6 +10,8 @@
 #include <optional>
 #include <string_view>
 #include <system_error>
+#include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -48,17 +50,32 @@ bool holds_name(std::string_view text, const std::string& job) {
   return false;
 }
 
+/// The texts in the header of a PNG or an EXR; none where it has none or is another file.
+std::vector<std::pair<std::string, std::string>> texts_of(const std::string& path) {
+  const bool png = path.ends_with(".png");
+  if (!png && !path.ends_with(".exr")) return {};
+  auto texts = png ? core::read_png_texts(path) : core::read_exr_texts(path);
+  return texts ? std::move(*texts) : std::vector<std::pair<std::string, std::string>>{};
+}
+
+/// Where the headers of other files stand: their beginning and their end; none of what cannot be
+/// read.
+std::vector<std::string> headers_of(const std::string& path) {
+  std::error_code none;
+  std::ifstream file(path, std::ios::binary);
+  const auto size = static_cast<std::streamoff>(fs::file_size(path, none));
+  if (!file || none) return {};
+  const std::streamoff bytes = std::min(size, kHeader);
+  return {part_of(file, 0, bytes), part_of(file, size - bytes, bytes)};
+}
+
 /// What a PNG or an EXR says that it was rendered for; nothing where it is another file, or says
 /// nothing.
 std::optional<std::string> told_job(const std::string& path) {
-  const bool png = path.ends_with(".png");
-  if (!png && !path.ends_with(".exr")) return std::nullopt;
-  if (const auto texts = png ? core::read_png_texts(path) : core::read_exr_texts(path)) {
-    for (const auto& [name, value] : *texts) {
-      if (name == "hyades.job") return value;
-    }
+  for (auto& [name, value] : texts_of(path)) {
+    if (name == "hyades.job") return value;
   }
-  if (png) return std::nullopt;
+  if (!path.ends_with(".exr")) return std::nullopt;
   const auto film = core::read_film_info(path);
   return film ? std::optional(film->job_name) : std::nullopt;
 }
@@ -89,13 +106,8 @@ bool names_job(std::string_view header, const std::string& job) {
 
 /// What the comment of a JPEG, a TIFF or a video says under `name`.
 std::string told_in_comment(const std::string& path, const std::string& name) {
-  std::error_code none;
-  std::ifstream file(path, std::ios::binary);
-  const auto size = static_cast<std::streamoff>(fs::file_size(path, none));
-  if (!file || none) return "";
-  const std::streamoff bytes = std::min(size, kHeader);
   const std::string line = name + ": ";
-  for (const std::string& header : {part_of(file, 0, bytes), part_of(file, size - bytes, bytes)}) {
+  for (const std::string& header : headers_of(path)) {
     const size_t at = header.find(line);
     if (at == std::string::npos) continue;
     const size_t begin = at + line.size();
@@ -113,9 +125,7 @@ PictureWork told_work(const std::string& path) {
   std::string samples;
   std::string pixels;
   if (exr || path.ends_with(".png")) {
-    const auto texts = exr ? core::read_exr_texts(path) : core::read_png_texts(path);
-    if (!texts) return {};
-    for (const auto& [name, value] : *texts) {
+    for (const auto& [name, value] : texts_of(path)) {
       if (name == "hyades.samples") samples = value;
       if (name == "hyades.pixels") pixels = value;
     }
@@ -133,13 +143,9 @@ PictureWork told_work(const std::string& path) {
 
 bool is_of_job(const std::string& path, const std::string& job) {
   if (const auto told = told_job(path)) return *told == job;
-  std::error_code none;
-  std::ifstream file(path, std::ios::binary);
-  const auto size = static_cast<std::streamoff>(fs::file_size(path, none));
-  if (!file || none) return false;
-  const std::streamoff bytes = std::min(size, kHeader);
-  return names_job(part_of(file, 0, bytes), job) ||
-         names_job(part_of(file, size - bytes, bytes), job);
+  const std::vector<std::string> headers = headers_of(path);
+  return std::any_of(headers.begin(), headers.end(),
+                     [&](const std::string& header) { return names_job(header, job); });
 }
 
 core::Status check_own_files(const std::vector<std::string>& paths, const std::string& job) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <cstdint>
 #include <cstdio>
 #include <filesystem>
 #include <system_error>
@@ -25,7 +26,7 @@ namespace {
 core::VideoDesc with_pictures_at_hand(const core::Job& job, const core::VideoDesc& video,
                                       const core::VideoFrames& frames) {
   core::VideoDesc best = video;
-  size_t least = core::missing_pictures(video, frames).size();
+  size_t least = SIZE_MAX;  // its own come first
   for (const std::string& pictures : core::alike_pictures(job, video)) {
     core::VideoDesc other = video;
     other.pictures = pictures;
@@ -33,6 +34,7 @@ core::VideoDesc with_pictures_at_hand(const core::Job& job, const core::VideoDes
     if (missing >= least) continue;
     best = std::move(other);
     least = missing;
+    if (least == 0) break;
   }
   return best;
 }
