@@ -40,6 +40,15 @@ class FilmRoom : public testing::Test {
     EXPECT_EQ(lease.worker, kBert);
     EXPECT_EQ(lease.job, job);
   }
+  /// A job that is resumed while its film is still being set aside.
+  void resume_before_the_film_is_aside() {
+    add(kJob, plan(60, 2));
+    b.deliver_durably(b.ask(kAnna));
+    b.tell(JobPaused{kJob});
+    tick();
+    b.only<SetAside>();
+    b.tell(JobResumed{kJob});
+  }
   void tick() {
     b.now += std::chrono::seconds(1);
     b.tell(Tick{});
@@ -237,12 +246,7 @@ TEST_F(FilmRoom, WhereFilmsCannotBeSetAsideThereIsALittleMoreRoom) {
 }
 
 TEST_F(FilmRoom, AFilmThatIsNeededAgainStays) {
-  add(kJob, plan(60, 2));
-  b.deliver_durably(b.ask(kAnna));
-  b.tell(JobPaused{kJob});
-  tick();
-  b.only<SetAside>();
-  b.tell(JobResumed{kJob});
+  resume_before_the_film_is_aside();
   EXPECT_EQ(b.ask(kAnna).job, kJob);
   b.tell(FilmSetAside{kJob, 1, true});
   EXPECT_EQ(b.scheduler.films(), 60U);
@@ -250,12 +254,7 @@ TEST_F(FilmRoom, AFilmThatIsNeededAgainStays) {
 
 // There may be two questions at a time; each answer says what is.
 TEST_F(FilmRoom, AFilmIsAskedForAgainBeforeTheFirstAnswer) {
-  add(kJob, plan(60, 2));
-  b.deliver_durably(b.ask(kAnna));
-  b.tell(JobPaused{kJob});
-  tick();
-  b.only<SetAside>();
-  b.tell(JobResumed{kJob});
+  resume_before_the_film_is_aside();
   const Lease lease = b.ask(kAnna);
   b.tell(UnitReturned{kAnna, lease.lease, kJob, lease.units[0]});
   b.tell(JobPaused{kJob});
