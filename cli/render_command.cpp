@@ -35,6 +35,7 @@
 #include "core/base/io_reason.h"
 #include "core/base/printable.h"
 #include "core/base/text.h"
+#include "core/film/black.h"
 #include "core/job/layers.h"
 #include "core/job/noise_threshold.h"
 #include "core/render/chain_batch.h"
@@ -146,7 +147,7 @@ int report(const RenderOptions& options, const FilmRoom& room, const JobFrames& 
   const coordinator::Progress progress = run.progress();
   const RunTotals totals = frames.totals();
   print_bad_samples(totals, options.path);
-  warn_of_frames(options, totals.black, "black all over: no light reaches what the camera sees");
+  warn_of_frames(options, totals.black, core::kBlackWords);
   warn_of_frames(options, totals.dim,
                  "nearly black: brighter lights, or the 'exposure' of outputs, would show more");
   for (const coordinator::FrameFailure& failure : outcome.failures) {

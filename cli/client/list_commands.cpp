@@ -13,6 +13,7 @@
 #include "cli/client_commands.h"
 #include "cli/frame_range.h"
 #include "core/base/text.h"
+#include "core/film/black.h"
 #include "farm/job_state.h"
 
 namespace hyades::cli {
@@ -34,7 +35,6 @@ std::string left_text(const v1::Job& job) {
 }
 
 constexpr const char* kSuspect = "in doubt: a divergent worker had a part in it";
-constexpr const char* kBlack = "black all over: no light reaches what the camera sees";
 
 /// How long the job has been rendered; "-" of one that nobody has begun.
 std::string taken_text(const v1::Job& job) {
@@ -115,7 +115,7 @@ void print_frames(const v1::GetJobResponse& response, bool all) {
                     percent(frame.samples_done(), frame.samples()),
                     frame.worker_class().substr(0, 12), std::to_string(frame.restarts()),
                     frame.doubtful() ? kSuspect
-                    : frame.black()  ? kBlack
+                    : frame.black()  ? core::kBlackWords
                                      : frame.reason()});
   }
   if (rows.size() == 1) return;

@@ -13,6 +13,7 @@
 #include "coordinator/controller/video_maker.h"
 #include "coordinator/controller/worker_sessions.h"
 #include "core/base/text.h"
+#include "core/film/black.h"
 #include "farm/wire.h"
 #include "farm/wire_status.h"
 
@@ -157,7 +158,7 @@ void Diagnosis::explain_black(const Frames& frames, Reasons& reasons) {
   size_t told = 0;
   for (const int32_t frame : frames) {
     if (reasons.is_full()) break;
-    reasons.say_one("frame {} is black all over: no light reaches what the camera sees", frame);
+    reasons.say_one("frame {} is {}", frame, core::kBlackWords);
     ++told;
   }
   reasons.add(frames.size() - told);

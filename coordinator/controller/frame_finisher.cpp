@@ -122,7 +122,7 @@ bool FrameFinisher::finish(Completed& completed) {
   if (ActiveJob* still = jobs_.find(completed.job); still != nullptr && over.black) {
     still->black.insert(completed.frame);
     jobs_.note(*still, v1::LOG_LEVEL_WARNING, completed.frame, {},
-               "is black all over: no light reaches what the camera sees");
+               std::string("is ") + core::kBlackWords);
   }
   turn.tell(FinishDone{completed.job, completed.frame});
   return true;

@@ -4,6 +4,9 @@
 
 namespace hyades::core {
 
+/// What is said of a picture that is_black().
+inline constexpr const char* kBlackWords = "black all over: no light reaches what the camera sees";
+
 /// Whether no light has reached any pixel of the film, by samples or by splats.
 bool is_black(const Film& film);
 
