@@ -29,7 +29,7 @@ core::Status FilmsAside::put(int32_t frame, const core::Film& film, int32_t tile
                              const FrameKey& key, const std::string& worker_class) {
   auto file = files_.create(path(frame));
   if (!file) return file.error();
-  Put put{0, may_be_too_large(film), {}};
+  Put put{0, may_be_too_large(film), {}, {}};
   const auto write = [&](std::span<const std::byte> bytes) -> core::Status {
     const uint64_t size = bytes.size();
     put.bytes += sizeof size + size;
@@ -49,12 +49,18 @@ core::Status FilmsAside::put(int32_t frame, const core::Film& film, int32_t tile
 
 void FilmsAside::leave(const FilmLog& log, int32_t frame, std::vector<RecordPlace> records) {
   log_ = &log;
-  frames_[frame] = {0, false, std::move(records)};
+  frames_[frame] = {0, false, std::move(records), {}};
 }
 
 void FilmsAside::move(int32_t frame, std::vector<RecordPlace> records) {
   const auto known = frames_.find(frame);
-  if (known != frames_.end()) known->second.places = std::move(records);
+  if (known == frames_.end()) return;
+  known->second.places = std::move(records);
+  known->second.added.clear();
+}
+
+void FilmsAside::add(int32_t frame, std::vector<std::byte> record) {
+  frames_.at(frame).added.push_back(std::move(record));
 }
 
 core::Result<std::shared_ptr<core::Film>> FilmsAside::read(int32_t frame) const {
@@ -73,8 +79,16 @@ core::Status FilmsAside::copy(int32_t frame, const FilmLog::Sink& take) const {
   damaged_ = false;
   const auto known = frames_.find(frame);
   if (known == frames_.end()) return core::Error{"the film is not aside"};
-  if (known->second.places.empty()) return copy_file(frame, known->second, take);
-  for (const RecordPlace& place : known->second.places) {
+  const Put& put = known->second;
+  core::Status copied = put.places.empty() ? copy_file(frame, put, take) : copy_log(put, take);
+  for (const std::vector<std::byte>& record : put.added) {
+    if (copied) copied = take(record);
+  }
+  return copied;
+}
+
+core::Status FilmsAside::copy_log(const Put& put, const FilmLog::Sink& take) const {
+  for (const RecordPlace& place : put.places) {
     const auto record = log_->read(place, damaged_);
     if (!record) return record.error();
     if (core::Status taken = take(*record); !taken) return taken;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <map>
 #include <memory>
@@ -34,6 +35,8 @@ class FilmsAside {
   void leave(const FilmLog& log, int32_t frame, std::vector<RecordPlace> records);
   /// The log was compacted: the frame's records stand elsewhere now.
   void move(int32_t frame, std::vector<RecordPlace> records);
+  /// What became of the frame's film, which is there: a record that comes after its own.
+  void add(int32_t frame, std::vector<std::byte> record);
   /// Whether the frame's film is there.
   bool contains(int32_t frame) const { return frames_.contains(frame); }
   /// A copy of the frame's film, which stays; null where it holds nothing.
@@ -50,12 +53,15 @@ class FilmsAside {
     uint64_t bytes = 0;               ///< of its file
     bool too_large = false;           ///< for a record of the log, it may be
     std::vector<RecordPlace> places;  ///< in the log; none: it has a file
+    /// What was added since it was put or moved there.
+    std::vector<std::vector<std::byte>> added;
   };
   /// The frames whose films are there.
   const std::map<int32_t, Put>& frames() const { return frames_; }
 
  private:
   std::string path(int32_t frame) const;
+  core::Status copy_log(const Put& put, const FilmLog::Sink& take) const;
   core::Status copy_file(int32_t frame, const Put& put, const FilmLog::Sink& take) const;
 
   LogFiles& files_;

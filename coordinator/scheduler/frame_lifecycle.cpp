@@ -284,7 +284,6 @@ void FrameLifecycle::bring_back(ScheduledJob& job, FrameSlot& slot) {
 void FrameLifecycle::void_suspect_tiles(const ScheduledJob& job, FrameSlot& slot) {
   if (slot.phase != FramePhase::rendering) return;
   for (const uint32_t tile : slot.ledger->newly_suspect()) {
-    films_.take(job, slot);
     records_.persist(TileVoidedRecord{job.id, slot.frame, job.grid.tile(tile)});
   }
 }

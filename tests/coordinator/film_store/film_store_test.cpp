@@ -426,23 +426,38 @@ TEST(FilmStore, AFilmOfWhichATileIsGoneIsNotFetched) {
   EXPECT_EQ(kept.outgrown(), 1);
 }
 
-TEST(FilmStore, ATileOfAFilmThatIsSetAsideBecomesVoid) {
+// A worker that is found divergent has parts in films of any number of frames.
+TEST(FilmStore, ATileOfAFilmThatIsSetAsideBecomesVoidWhereItLies) {
   FaultyFiles other_files;
   Kept other(other_files);
   for (const int i : {0, 2}) ASSERT_TRUE(other.keep(1, tile(i)));
   const std::string without = other.digest(1);
+  ASSERT_TRUE(other.keep(1, tile(1)));
+  const std::string whole = other.digest(1);
   FaultyFiles files;
-  {
-    Kept kept(files);
-    for (int i = 0; i < 3; ++i) ASSERT_TRUE(kept.keep(1, tile(i)));
-    ASSERT_TRUE(kept.set_aside(1));
+  for (const KeptFilms before : {KeptFilms::erase, KeptFilms::require}) {
+    // In a file of its own, and in the log of the run before.
+    Kept kept(files, std::chrono::seconds(30), before);
+    if (before == KeptFilms::erase) {
+      for (int i = 0; i < 3; ++i) ASSERT_TRUE(kept.keep(1, tile(i)));
+      ASSERT_TRUE(kept.set_aside(1));
+    }
     ASSERT_TRUE(kept.say(TileVoidedRecord{{}, 1, tile(1)}));
-    EXPECT_FALSE(kept.is_aside(1));
-    EXPECT_EQ(kept.digest(1), without);
+    EXPECT_TRUE(kept.is_aside(1));
+    EXPECT_EQ(kept.digest_aside(1), without);
+    kept.make_room();
+    EXPECT_TRUE(kept.is_aside(1));
+    EXPECT_EQ(kept.digest_aside(1), without);
+    // What comes afterwards is not void.
+    ASSERT_TRUE(kept.keep(1, tile(1)));
+    EXPECT_EQ(kept.digest(1), whole);
     ASSERT_TRUE(kept.set_aside(1));
   }
   Kept again(files, std::chrono::seconds(30), KeptFilms::require);
-  EXPECT_EQ(again.digest_aside(1), without);
+  EXPECT_EQ(again.digest_aside(1), whole);
+  ASSERT_TRUE(again.say(TileVoidedRecord{{}, 1, tile(1)}));
+  EXPECT_TRUE(again.fetch(1));
+  EXPECT_EQ(again.digest(1), without);
 }
 
 TEST(FilmStore, OfAFilmThatIsSetAsideNothingIsLeftWhenItsFrameBeginsAgain) {

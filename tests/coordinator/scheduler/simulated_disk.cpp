@@ -114,6 +114,15 @@ std::string SimulatedDisk::digest_aside(int32_t frame) const {
   return *film ? (*film)->digest() : blank().digest();
 }
 
+std::string SimulatedDisk::void_aside(const TileVoidedRecord& voided) {
+  const auto film = aside_->read(voided.frame);
+  aside_->add(voided.frame, encode(voided));
+  if (!film) return "";
+  core::Film whole = *film ? std::move(**film) : blank();
+  whole.erase(voided.tile);
+  return whole.digest();
+}
+
 core::Result<core::Film> SimulatedDisk::fetch(int32_t frame) {
   auto film = aside_->read(frame);
   aside_->remove(frame);

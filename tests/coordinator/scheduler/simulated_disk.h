@@ -49,6 +49,9 @@ class SimulatedDisk {
   bool any_aside() const { return aside_ && !aside_->frames().empty(); }
   /// What the film of a frame is that is aside.
   std::string digest_aside(int32_t frame) const;
+  /// A tile of a film that is aside becomes void, and the film stays there. What its digest is to
+  /// be now; empty where the film is damaged.
+  std::string void_aside(const TileVoidedRecord& voided);
   /// The frame's film, which is not there any more.
   core::Result<core::Film> fetch(int32_t frame);
   void forget_aside(int32_t frame) { aside_->remove(frame); }

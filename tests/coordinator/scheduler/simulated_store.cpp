@@ -131,8 +131,13 @@ void SimulatedWorld::store(const FrameRestartedRecord& again) {
 void SimulatedWorld::store(const TileVoidedRecord& voided) {
   SimJob& job = jobs_.at(voided.job);
   if (real_store_ && !job.ended) {
-    aside.voids += job.disk->is_aside(voided.frame);
-    if (fetch(job, voided.frame)) job.frames.at(voided.frame).film.erase(voided.tile);
+    SimFrame& frame = job.frames.at(voided.frame);
+    if (job.disk->is_aside(voided.frame)) {
+      ++aside.voids;
+      frame.digest = job.disk->void_aside(voided);
+    } else {
+      frame.film.erase(voided.tile);
+    }
   }
   std::erase_if(job.stored.accepted, [&](const AcceptedUnit& u) {
     const bool there = u.unit.frame == voided.frame && u.unit.tile == voided.tile;
