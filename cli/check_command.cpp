@@ -152,9 +152,9 @@ void print_contents(const core::Job& job, const core::Scene& scene, double sampl
   std::printf("  frames     %s of %d x %d%s\n",
               core::format_count(static_cast<uint64_t>(frames)).c_str(), window.width(),
               window.height(), job.film.crop ? " (cropped)" : "");
-  std::printf("  objects    %s, %s triangles, %s\n",
+  std::printf("  objects    %s, %s triangle%s, %s\n",
               core::format_count(scene.objects.size()).c_str(),
-              core::format_count(scene.triangles).c_str(),
+              core::format_count(scene.triangles).c_str(), scene.triangles == 1 ? "" : "s",
               core::counted(scene.lights.size(), "light").c_str());
   if (core::noise_threshold(job).adaptive()) {
     std::printf("  samples    at most %u per pixel, %s in all; tiles stop at a noise of %g\n",
@@ -177,9 +177,10 @@ void print_units(const core::Job& job, bool splats, std::optional<double> second
   if (splats) plan.tile_size = coordinator::kSplatTile;
   const uint64_t tiles = coordinator::TileGrid(plan.region, plan.tile_size).size();
   if (seconds) {
-    std::printf("  units      about %s per frame (%s tiles of %d x %d pixels, runs of batches)\n",
+    std::printf("  units      about %s per frame (%s tile%s of %d x %d pixels, runs of batches)\n",
                 core::format_count(units_per_frame(job, plan, *seconds)).c_str(),
-                core::format_count(tiles).c_str(), plan.tile_size, plan.tile_size);
+                core::format_count(tiles).c_str(), tiles == 1 ? "" : "s", plan.tile_size,
+                plan.tile_size);
   } else {
     const uint64_t most = tiles * core::batch_count(plan.samples);
     std::printf("  units      %s to %s per frame (tiles of %d x %d pixels)\n",

@@ -114,10 +114,10 @@ std::vector<std::string> doubtful_light_colors(const Job& job) {
     std::visit([&](const auto& kind) { doubt("light '" + light.name + "'", kind.color, doubts); },
                light.kind);
   }
-  for (const ObjectDesc& object : job.objects) {
-    if (!object.emit || !object.emit->color.texture.empty()) continue;
+  for_each_object(job, [&](const ObjectDesc& object) {
+    if (!object.emit || !object.emit->color.texture.empty()) return;
     doubt("the light of object '" + object.name + "'", object.emit->color.value, doubts);
-  }
+  });
   if (job.environment) doubt("the environment", job.environment->color, doubts);
   return doubts;
 }

@@ -5,27 +5,21 @@
 #include <vector>
 
 namespace hyades::core {
-namespace {
 
-bool any_emits(const std::vector<ObjectDesc>& objects) {
-  return std::any_of(objects.begin(), objects.end(), [](const ObjectDesc& object) {
-    return object.emit.has_value() || any_emits(object.children);
-  });
+bool any_medium_glows(const Job& job) {
+  return std::any_of(job.media.begin(), job.media.end(),
+                     [](const MediumDesc& medium) { return medium.emission.has_value(); });
 }
 
-}  // namespace
-
 bool may_give_light(const Job& job) {
-  const auto glows = [](const MediumDesc& medium) { return medium.emission.has_value(); };
-  const auto emits = [](const GroupDesc& group) { return any_emits(group.objects); };
+  bool emits = false;
+  for_each_object(job, [&](const ObjectDesc& object) { emits |= object.emit.has_value(); });
   const auto shines = [](const MaterialDesc& material) {
     const auto* principled = std::get_if<PrincipledDesc>(&material.kind);
     return principled != nullptr && principled->emits();
   };
-  return !job.lights.empty() || job.environment ||
-         std::any_of(job.media.begin(), job.media.end(), glows) ||
-         std::any_of(job.materials.begin(), job.materials.end(), shines) ||
-         any_emits(job.objects) || std::any_of(job.groups.begin(), job.groups.end(), emits);
+  return emits || !job.lights.empty() || job.environment || any_medium_glows(job) ||
+         std::any_of(job.materials.begin(), job.materials.end(), shines);
 }
 
 }  // namespace hyades::core

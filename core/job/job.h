@@ -55,4 +55,21 @@ struct Job {
   }
 };
 
+/// Calls `visit` with every object that is written among `objects`, and with those of groups that
+/// are written in place among them.
+template <class Visit>
+void for_each_object(const std::vector<ObjectDesc>& objects, const Visit& visit) {
+  for (const ObjectDesc& object : objects) {
+    visit(object);
+    for_each_object(object.children, visit);
+  }
+}
+
+/// Calls `visit` with every object that is written in the job, those of its groups too.
+template <class Visit>
+void for_each_object(const Job& job, const Visit& visit) {
+  for_each_object(job.objects, visit);
+  for (const GroupDesc& group : job.groups) for_each_object(group.objects, visit);
+}
+
 }  // namespace hyades::core

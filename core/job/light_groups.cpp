@@ -15,13 +15,6 @@ namespace {
 
 constexpr size_t kLongestName = 64;
 
-void collect(const std::vector<ObjectDesc>& objects, std::set<std::string>& groups) {
-  for (const ObjectDesc& object : objects) {
-    if (object.emit) groups.insert(object.emit->light_group);
-    collect(object.children, groups);
-  }
-}
-
 bool is_plain(char c) {
   return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' ||
          c == '-';
@@ -34,8 +27,9 @@ std::vector<std::string> light_groups_of(const Job& job) {
   for (const LightDesc& light : job.lights) groups.insert(light.light_group);
   for (const MediumDesc& medium : job.media) groups.insert(medium.light_group);
   if (job.environment) groups.insert(job.environment->light_group);
-  collect(job.objects, groups);
-  for (const GroupDesc& group : job.groups) collect(group.objects, groups);
+  for_each_object(job, [&](const ObjectDesc& object) {
+    if (object.emit) groups.insert(object.emit->light_group);
+  });
   groups.erase("");
   return {groups.begin(), groups.end()};
 }

@@ -249,9 +249,7 @@ class SceneBuilder {
   }
 
   void warn_of_darkness() {
-    const bool glows = std::any_of(job_.media.begin(), job_.media.end(),
-                                   [](const MediumDesc& medium) { return medium.emission; });
-    if (glows) return;
+    if (any_medium_glows(job_)) return;
     if (!scene_->lights.empty()) {
       // Animations may well begin in the dark.
       const bool still = job_.frames.first == job_.frames.last;
