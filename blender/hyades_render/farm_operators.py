@@ -102,12 +102,16 @@ class _Submission:
         def on_bytes(sent: int, total: int) -> None:
             task.words = f"{sent / max(total, 1):.0%} of {total / 1e6:.1f} MB"
 
+        warnings: list[str] = []
         try:
             path = job.write(folder / "job.yaml")
-            self.submitted = self._farm.submit(path, program=self._program, on_bytes=on_bytes, **options)
+            self.submitted = self._farm.submit(
+                path, program=self._program, on_bytes=on_bytes, on_warning=warnings.append, **options
+            )
         finally:
             shutil.rmtree(folder, ignore_errors=True)
-        return f"submitted job {self.submitted.id}, {self.submitted.name}, {self.submitted.frames} frames"
+        done = f"submitted job {self.submitted.id}, {self.submitted.name}, {self.submitted.frames} frames"
+        return "; warning: ".join([done, *warnings])
 
 
 class HYADES_OT_stop_submission(_FarmOperator, bpy.types.Operator):

@@ -8,7 +8,7 @@ import bpy
 
 from . import farm_state
 
-_ICONS = {"running": "PLAY", "paused": "PAUSE", "done": "CHECKMARK", "failed": "ERROR", "cancelled": "CANCEL"}
+_ICONS = {"waiting": "SORTTIME", "running": "PLAY", "paused": "PAUSE", "done": "CHECKMARK", "failed": "ERROR", "cancelled": "CANCEL"}
 
 
 class HYADES_UL_jobs(bpy.types.UIList):
@@ -82,7 +82,7 @@ class HYADES_PT_farm(bpy.types.Panel):
         row.operator("hyades.fetch", icon="IMPORT").job = int(job.job_id)
         row.operator("hyades.open_dashboard", text="Dashboard", icon="URL").job = int(job.job_id)
         cancel = row.row(align=True)
-        cancel.enabled = job.state in ("running", "paused")
+        cancel.enabled = job.state in ("waiting", "running", "paused")
         cancel.operator("hyades.cancel", icon="X").job = int(job.job_id)
 
 

@@ -108,7 +108,8 @@ def _take_jobs(seen: Any) -> None:
     for row, job in zip(rows, seen.jobs):
         # A coordinator may say anything, Blender's properties take no more than this.
         row.job_id, row.share = str(job.id), max(0.0, min(job.share, 1.0))
-        row.name, row.state, row.reason = (printable_lines(text)[:200] for text in (job.name, job.state, job.reason))
+        state = "waiting" if job.waiting else job.state
+        row.name, row.state, row.reason = (printable_lines(text)[:200] for text in (job.name, state, job.reason))
         row.frames, row.frames_done, row.frames_failed, row.seconds_left = (
             max(-_MOST_WHOLE, min(number, _MOST_WHOLE))
             for number in (job.frames, job.frames_done, job.frames_failed, job.seconds_left)

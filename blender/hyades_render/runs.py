@@ -98,7 +98,7 @@ class FarmRun:
 
     def _run(self, program: str, job: Path, frame: int, options: dict[str, Any]) -> None:
         try:
-            self._job = self._farm.submit(job, program=program, **options)
+            self._job = self._farm.submit(job, program=program, on_warning=print, **options)
             samples = -1
             while not self._job.ended:
                 if self._stopped.wait(_LOOKS_EVERY):

@@ -8,10 +8,17 @@
 #include <tuple>
 #include <vector>
 
-#include "coordinator/scheduler/extent.h"
 #include "coordinator/scheduler/ids.h"
+#include "core/film/unit.h"
 
 namespace hyades::coordinator {
+
+/// A unit within its frame: a tile by its index in the grid.
+struct Extent {
+  uint32_t tile = 0;
+  core::BatchRange batches;
+  friend bool operator==(const Extent&, const Extent&) = default;
+};
 
 /// Whether a worker may try a unit that has failed with these workers (sorted, each once), and
 /// about which these voices have said what they think.

@@ -6,6 +6,7 @@ import tempfile
 import threading
 import time
 import unittest
+import warnings
 
 from environment import HYADES, PROGRAMS
 import numpy
@@ -46,6 +47,18 @@ class WholeFarm(unittest.TestCase):
         for path in files:
             name = path.relative_to(self.folder / "here")
             self.assertEqual(path.read_bytes(), (self.folder / "there" / name).read_bytes(), name)
+
+    def test_what_is_likely_not_meant_is_told(self) -> None:
+        dark = scene()
+        dark.environment = None
+        with self.assertWarnsRegex(UserWarning, "nothing gives light"):
+            self.farm.submit(dark)
+        told: list = []
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")
+            self.farm.submit(dark, on_warning=told.append)
+            self.assertEqual(len(told), 1)
+            self.farm.submit(scene())
 
     def test_the_farm_gives_the_bits_of_this_machine_whoever_is_killed(self) -> None:
         job = scene(samples=256)

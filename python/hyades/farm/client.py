@@ -5,6 +5,7 @@ from __future__ import annotations
 import getpass
 import itertools
 import secrets
+import warnings
 from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from typing import Any, Literal, TypeAlias
@@ -15,6 +16,7 @@ from ..errors import FarmError
 from ..exr import Layers
 from ..job import Job
 from ..machine import usable_memory
+from ..printable import printable_lines
 from ..program import PathLike
 from .answers import no_end, part
 from .events import JobEvents
@@ -81,11 +83,13 @@ class Farm:
         redundancy: int = 0,
         frame_order: Literal["sequential", "progressive"] = "sequential",
         on_bytes: OnBytes | None = None,
+        on_warning: Callable[[str], object] | None = None,
         program: PathLike | None = None,
     ) -> JobState:
         """Uploads what the coordinator lacks of a job's files and submits the job, once, however
         often an answer is lost. Options are those of `hyades submit` (docs/client.md); `on_bytes` is
-        told the bytes that were sent and their total. JobError: the job has mistakes."""
+        told the bytes that were sent and their total, `on_warning` each thing that is likely not meant in
+        the job, that nothing gives light, say (without it: warnings of Python's). JobError: the job has mistakes."""
         message: dict[str, Any] = {
             "name": name,
             "samples": samples,
@@ -103,7 +107,15 @@ class Farm:
             message["frames"] = [_frame_range(frames)]
         with packed(job, program) as package:
             answer = submit(self._http, package, message, on_bytes)
-        return read_state(JobState, part(answer, "job", dict))
+        state = read_state(JobState, part(answer, "job", dict))
+        told = answer.get("warnings")  # older coordinators have none
+        for warning in told if isinstance(told, list) else []:
+            text = printable_lines(str(warning))
+            if on_warning is None:
+                warnings.warn(text, stacklevel=2)
+            else:
+                on_warning(text)
+        return state
 
     def jobs(self, *, ended: bool = False, owner: str | None = None) -> Iterator[JobState]:
         """Open jobs, the newest first; with `ended` also those that have ended."""
