@@ -164,13 +164,15 @@ bool FrameLifecycle::await_film(const ScheduledJob& job, FrameSlot& slot) {
 void FrameLifecycle::serve_waiting(
     const std::function<bool(const ScheduledJob& job, const FrameSlot& slot)>& fits) {
   film_is_next_ = false;
+  owners_waiting_.clear();
   int looked = 0;
   for (auto it = waiting_.begin();
        it != waiting_.end() && !film_is_next_ && looked < kWaitingLookedAt; ++looked) {
     const auto [job, slot] = jobs_.find_frame(*it);
     const bool waits = slot != nullptr && slot->awaits_film;
-    if (waits && !slot->film && !fits(*job, *slot)) {
-      film_is_next_ = !films_.most_are_of(*job);
+    if (waits && !slot->film && (film_is_next_of(job->plan.owner) || !fits(*job, *slot))) {
+      film_is_next_ = films_.may_hold_up(*job);
+      owners_waiting_.insert(job->plan.owner);
       ++it;
       continue;
     }

@@ -4,6 +4,7 @@
 #include <deque>
 #include <functional>
 #include <optional>
+#include <set>
 #include <string>
 
 #include "coordinator/scheduler/affinity.h"
@@ -72,6 +73,8 @@ class FrameLifecycle {
       const std::function<bool(const ScheduledJob& job, const FrameSlot& slot)>& fits);
   /// Whether one of them is next in line for room.
   bool film_is_next() const { return film_is_next_; }
+  /// Whether a frame of this owner's does so.
+  bool film_is_next_of(const std::string& owner) const { return owners_waiting_.contains(owner); }
 
   /// It is durable that the frame is done or has failed, as `phase` says.
   void over(ScheduledJob& job, FrameSlot& slot, FramePhase phase);
@@ -108,6 +111,7 @@ class FrameLifecycle {
   uint64_t last_question_ = 0;
   std::deque<FrameId> waiting_;  ///< of which FrameSlot::awaits_film, and others by now
   bool film_is_next_ = false;
+  std::set<std::string> owners_waiting_;  ///< of those looked at lately
 };
 
 }  // namespace hyades::coordinator

@@ -207,19 +207,23 @@ std::optional<FramePlace> Granting::next_in_line(WorkerId id, const Worker& work
 
 /// The first frame of the share that the worker had better take; where all have workers enough, the
 /// one with most to do. Where a frame waits for room for its film `begun` is set, for all that
-/// follow: of these only frames that have begun count, so that a large film gets room some time.
-/// Who has taken most of the room himself holds up nobody else.
+/// follow: of these only frames that have begun count, so that a large film gets room some time,
+/// and small ones that leave it. Whose films take most of the room holds up nobody else.
 std::optional<FramePlace> Granting::next_of(const FairShare& share, WorkerId id,
                                             const Worker& worker, bool fresh, bool& begun) {
   std::optional<FramePlace> roomiest;
   double most = -1;
   size_t looked = 0;
-  bool own = begun;
+  bool own = false;  // of this owner's
+  const auto is_held_up = [&](const ScheduledJob& job) {
+    return !films_.is_next(job) && (own || (begun && !films_.leaves_room(job)));
+  };
   ReadyJobs ready(share, worker);
   while (ScheduledJob* job = ready.next()) {
     if (!ScheduledWorkers::may_join(*job, id, worker)) continue;
+    own = own || frames_.film_is_next_of(job->plan.owner);
     if (job->plan.order == FrameOrder::progressive) {
-      const auto slot = find_pass(*job, id, worker, begun);
+      const auto slot = find_pass(*job, id, worker, is_held_up(*job));
       if (slot && !(fresh && Affinity::has_scene(worker, FramePlace{job, *slot}.id()))) {
         return FramePlace{job, *slot};
       }
@@ -232,9 +236,10 @@ std::optional<FramePlace> Granting::next_of(const FairShare& share, WorkerId id,
         // One that was set aside may have nothing for anybody who is here.
         if (!has_units_for(*job, frame, id, worker)) continue;
         const bool fits = film_fits(*job, frame);
+        const bool held_up = is_held_up(*job);
         own = own || !fits;
-        begun = begun || (!fits && !films_.most_are_of(*job) && !films_.has_yielded(*job));
-        if (own) continue;
+        begun = begun || (!fits && films_.may_hold_up(*job));
+        if (!fits || held_up) continue;
       }
       const Welcome welcome = welcome_at(place, id, worker, fresh);
       if (welcome == Welcome::yes) return place;
@@ -382,7 +387,10 @@ std::optional<FramePlace> Granting::find_loaded(WorkerId id, const Worker& worke
 /// frames; or these cannot be set aside though nobody works at any.
 bool Granting::film_fits(const ScheduledJob& job, const FrameSlot& slot) const {
   if (slot.film) return slot.stays_until > step_.now || !films_.must_yield(job);
-  if (films_.has_room(job) && !films_.has_yielded(job)) return true;
+  if (films_.has_room(job) && !films_.has_yielded(job)) {
+    films_.expect(job);
+    return true;
+  }
   if (crammed_ && films_.has_room_in_need(job) && !any_film_in_work()) return true;
   films_.refuse(job);
   return false;

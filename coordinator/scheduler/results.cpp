@@ -62,6 +62,10 @@ void Results::on(const ResultArrived& e) {
     reject(e, RejectReason::overlap);
   } else if (slot->worker_class != ClassId{} && slot->worker_class != worker->worker_class) {
     reject(e, RejectReason::unknown);
+  } else if (!slot->film && !films_.has_place(*job)) {
+    // It is late: its lease has ended, and the frame's film was set aside.
+    films_.refuse(*job);
+    reject(e, RejectReason::not_now);
   } else {
     accept(*job, *slot, *extent, *worker, e);
   }

@@ -30,7 +30,8 @@ struct Scheduler::Parts {
   Affinity affinity{options, step, jobs};
   HedgedCopies copies{options, step, jobs, workers, leases, affinity};
   FrameLifecycle frames{options, step, jobs, workers, films, leases, records, affinity};
-  WorkerLifecycle worker_lifecycle{options, step, jobs, workers, leases, affinity, copies, frames};
+  WorkerLifecycle worker_lifecycle{options, step,     jobs,   workers, films,
+                                   leases,  affinity, copies, frames};
   Conflicts conflicts{step, jobs, leases, records, frames, worker_lifecycle};
   JobLifecycle job_lifecycle{jobs, workers, films, leases, frames, conflicts};
   Results results{step,     jobs,   workers,          films,    leases, records,

@@ -11,12 +11,13 @@ namespace hyades::coordinator {
 class WorkerLifecycle {
  public:
   WorkerLifecycle(const SchedulerOptions& options, Step& step, ScheduledJobs& jobs,
-                  ScheduledWorkers& workers, Leases& leases, const Affinity& affinity,
-                  HedgedCopies& copies, FrameLifecycle& frames)
+                  ScheduledWorkers& workers, const FilmBudget& films, Leases& leases,
+                  const Affinity& affinity, HedgedCopies& copies, FrameLifecycle& frames)
       : options_(options),
         step_(step),
         jobs_(jobs),
         workers_(workers),
+        films_(films),
         leases_(leases),
         affinity_(affinity),
         copies_(copies),
@@ -42,6 +43,7 @@ class WorkerLifecycle {
   Step& step_;
   ScheduledJobs& jobs_;
   ScheduledWorkers& workers_;
+  const FilmBudget& films_;
   Leases& leases_;
   const Affinity& affinity_;
   HedgedCopies& copies_;

@@ -1,4 +1,6 @@
 // Films of all jobs together have so much memory.
+#include <numeric>
+
 #include "tests/coordinator/scheduler/scheduler_testing.h"
 
 namespace hyades::coordinator {
@@ -370,6 +372,132 @@ TEST_F(FilmRoom, WhoHasTakenMostOfTheRoomHoldsUpNobodyElse) {
   add(kThird, small);
   b.tell(WorkRequested{kBert, 1});
   expect_bert_gets(kThird);
+}
+
+// A worker may keep what it has rendered, and deliver it when the frames' films have been set
+// aside.
+TEST_F(FilmRoom, LateResultsBringFilmsIntoMemoryAsThereIsRoom) {
+  for (const JobId job : {kJob, kOther, kThird}) add(job, plan(60, 2), all_of_it_aside());
+  const auto deliver_late = [&](JobId job) {
+    b.tell(ResultArrived{kAnna, {7}, job, {1, {32, 0, 64, 32}, {0, 1}}, digest(1)});
+  };
+  deliver_late(kJob);
+  EXPECT_EQ(b.all<Persist>().size(), 1U);
+  for (const JobId job : {kOther, kThird}) {
+    deliver_late(job);
+    EXPECT_TRUE(b.all<Persist>().empty());
+    EXPECT_EQ(b.only<Reject>().reason, RejectReason::not_now);
+    EXPECT_EQ(b.scheduler.films(), 60U);
+  }
+  b.tell(JobCancelled{kJob});
+  deliver_late(kThird);
+  EXPECT_EQ(b.all<Persist>().size(), 1U);
+  EXPECT_EQ(b.scheduler.films(), 60U);
+}
+
+TEST_F(FilmRoom, UnitsInHandBringFilmsIntoMemoryAsThereIsRoom) {
+  std::vector<UnitInHand> in_hand;
+  for (const JobId job : {kJob, kOther, kThird}) {
+    add(job, plan(60, 2), all_of_it_aside());
+    in_hand.push_back({{in_hand.size() + 1}, job, {1, {32, 0, 64, 32}, {0, 1}}});
+  }
+  b.join(kChoosy, in_hand);
+  EXPECT_EQ(b.only<Lease>().job, kJob);
+  EXPECT_EQ(b.all<Revoke>().size(), 2U);
+  EXPECT_EQ(b.scheduler.films(), 60U);
+}
+
+/// Three workers that render a unit a second each, and a disk that takes no time.
+class CrowdedFilms : public FilmRoom {
+ protected:
+  void SetUp() override {
+    FilmRoom::SetUp();
+    b.join(kChoosy);
+  }
+  static JobPlan of(const std::string& owner, uint64_t film_bytes, int32_t tiles) {
+    JobPlan job = plan(film_bytes, tiles);
+    job.owner = owner;
+    return job;
+  }
+  void add(JobId job, JobPlan plan) { tell(JobAdded{job, std::move(plan), {}}); }
+  /// How many units of each job were leased meanwhile.
+  std::map<JobId, int> work(int seconds) {
+    units_.clear();
+    for (int second = 0; second < seconds; ++second) {
+      b.now += std::chrono::seconds(1);
+      tell(Tick{});
+      for (const Lease& lease : std::exchange(leases_, {})) {
+        tell(ResultArrived{lease.worker, lease.lease, lease.job, lease.units.at(0), digest(1),
+                           std::chrono::seconds(1)});
+        tell(WorkRequested{lease.worker, 1});
+      }
+      for (const WorkerId worker : std::exchange(idle_, {})) tell(WorkRequested{worker, 1});
+      EXPECT_LE(b.scheduler.films(), 100U);
+    }
+    return units_;
+  }
+
+ private:
+  void tell(const Event& event) {
+    for (const Action& said : b.tell(event)) {
+      if (const auto* lease = std::get_if<Lease>(&said)) {
+        leases_.push_back(*lease);
+        ++units_[lease->job];
+      } else if (const auto* open = std::get_if<OpenFrame>(&said)) {
+        tell(FrameOpened{open->job, open->frame});
+      } else if (const auto* persist = std::get_if<Persist>(&said)) {
+        tell(Persisted{persist->id});
+      } else if (const auto* finish = std::get_if<FinishFrame>(&said)) {
+        tell(FinishDone{finish->job, finish->frame});
+      } else if (const auto* aside = std::get_if<SetAside>(&said)) {
+        tell(FilmSetAside{aside->job, aside->frame, true});
+      }
+    }
+  }
+  std::vector<Lease> leases_;
+  std::vector<WorkerId> idle_ = {kAnna, kBert, kChoosy};
+  std::map<JobId, int> units_;
+};
+
+// Workers stay with a scene for twenty seconds.
+TEST_F(CrowdedFilms, AFrameThatWaitsForItsTurnHoldsUpNoneThatLeavesItsRoom) {
+  add(kJob, of("eve", 47, 1000));
+  work(1);
+  add(kOther, of("dan", 73, 1000));
+  add(kThird, of("cat", 5, 1000));
+  auto units = work(60);
+  EXPECT_GT(units[kThird], 20);
+  EXPECT_EQ(units[kOther], 0);
+  units = work(60);
+  EXPECT_GT(units[kOther], 10) << "its turn comes though nobody has more than half";
+  EXPECT_GT(units[kThird], 20);
+  units = work(300);
+  for (const JobId job : {kJob, kOther, kThird}) {
+    EXPECT_GT(units[job], 50) << static_cast<uint64_t>(job);
+  }
+}
+
+TEST_F(CrowdedFilms, WhoWaitsForHisOwnFilmsHoldsUpNobodyElse) {
+  add(kJob, of("eve", 47, 1000));
+  work(1);
+  JobPlan urgent = of("eve", 73, 1000);
+  urgent.priority = 10;
+  add(kOther, urgent);
+  add(kThird, of("cat", 50, 1000));
+  EXPECT_GT(work(60)[kThird], 20);
+}
+
+TEST_F(CrowdedFilms, SmallFramesPutNobodysTurnOff) {
+  add(kJob, of("eve", 60, 1000));
+  work(1);
+  JobPlan small = of("cat", 1, 1);
+  small.frames.resize(1000);
+  std::iota(small.frames.begin(), small.frames.end(), 1);
+  add(kThird, small);
+  add(kOther, of("vic", 49, 1000));
+  const auto units = work(120);
+  EXPECT_GT(units.at(kThird), 3);
+  EXPECT_TRUE(units.contains(kOther)) << "others' small frames begin and end all the time";
 }
 
 TEST_F(FilmRoom, FilmsFromBeforeARestartTakeRoom) {
