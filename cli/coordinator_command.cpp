@@ -32,6 +32,7 @@
 #include "coordinator/access/machine_key.h"
 #include "coordinator/controller/controller.h"
 #include "coordinator/notify/notifier.h"
+#include "coordinator/services/memory_trim.h"
 #include "coordinator/services/server.h"
 #include "coordinator/web/web_server.h"
 #include "core/base/atomic_file.h"
@@ -392,7 +393,7 @@ void add_limits(CLI::App& app, ControllerOptions& options) {
       ->transform(CLI::AsSizeValue(false));
   app.add_option("--film-memory", options.film_memory,
                  "most bytes that films of frames in work may take in memory; jobs of which one "
-                 "takes more are refused (default: half of the machine's memory)")
+                 "takes more are refused (default: a third of the machine's memory)")
       ->transform(CLI::AsSizeValue(false));
   app.add_option_function<std::string>(
          "--price",
@@ -434,6 +435,7 @@ void add_quotas(CLI::App& app, OwnerLimits& limits) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  hyades::coordinator::return_large_blocks();
   hyades::core::ignore_file_size_signal();
   hyades::farm::die_with_words("hyades coordinator",
                                "what was promised is durable: start it again");

@@ -61,7 +61,8 @@ struct ControllerOptions {
   Duration recovery_time = std::chrono::seconds(15);
   /// Bytes that films of frames in work, of all jobs, may take in memory. Jobs of which one frame
   /// takes more are refused.
-  uint64_t film_memory = core::half_of_memory();
+  /// A third: beside films in work, those that are being finished are in memory once more.
+  uint64_t film_memory = core::half_of_memory() / 3 * 2;
   /// Bytes that documents of jobs may take in memory beside those that are in use (JobDocuments).
   /// One of 10,000 characters takes some 440 kB, so that those of 1,000 such jobs stay.
   uint64_t document_memory = uint64_t{512} << 20U;

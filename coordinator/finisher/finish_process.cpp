@@ -94,6 +94,11 @@ core::Status run(const std::string& program, std::string word, const std::string
     nap = std::min(2 * nap, std::chrono::microseconds(20'000));
   }
   if (asked) return core::Error{stop ? "the coordinator stops" : "finishing took too long"};
+  if (WIFSIGNALED(status) && WTERMSIG(status) == SIGKILL) {
+    return core::Error{
+        "the finisher was killed: mostly the system does so where memory is short, as a film that "
+        "is finished is in memory twice (a smaller --film-memory leaves more)"};
+  }
   if (WIFSIGNALED(status)) {
     return core::Error{fmt::format("the finisher was ended by signal {}", WTERMSIG(status))};
   }

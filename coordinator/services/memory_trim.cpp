@@ -10,7 +10,12 @@ namespace {
 /// What is worth the trouble [bytes].
 constexpr size_t kMuch = size_t{16} << 20U;
 
+/// Where blocks are mapped one by one. A bound that is set does not grow by itself.
+constexpr int kMapped = 256 << 10;
+
 }  // namespace
+
+void return_large_blocks() { ::mallopt(M_MMAP_THRESHOLD, kMapped); }
 
 void MemoryTrim::look() {
   // What was given back still counts as free, until it is used again.

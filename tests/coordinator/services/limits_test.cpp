@@ -2,13 +2,13 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
-#include <fstream>
 #include <thread>
 #include <vector>
 
 #include "coordinator/services/worker_bytes.h"
 #include "farm/part_count.h"
 #include "tests/coordinator/services/farm_world.h"
+#include "tests/support/resident_bytes.h"
 
 namespace hyades::coordinator {
 namespace {
@@ -248,13 +248,6 @@ TEST_F(Limits, OfTheMemoryThatAFilmTakes) {
   EXPECT_NE(now.reason().find("80 x 48"), std::string::npos) << now.reason();
 }
 
-uint64_t resident_bytes() {
-  uint64_t pages = 0;
-  std::ifstream statm("/proc/self/statm");
-  statm >> pages >> pages;
-  return pages * 4096;
-}
-
 // A frame of so many samples knows of each batch who has it: 256 KiB for each tile at which
 // somebody works. Frames that are open, and at which nobody does, take none of it.
 TEST_F(Limits, OfTheMemoryThatSamplesTake) {
@@ -277,14 +270,14 @@ TEST_F(Limits, OfTheMemoryThatSamplesTake) {
   ASSERT_TRUE(world.upload(sized("[1024, 1024]")).ok());
   expect_refused(submitted(sized("[1024, 1024]")), StatusCode::INVALID_ARGUMENT,
                  "16777216 samples take");
-  const uint64_t before = resident_bytes();
+  const uint64_t before = test::resident_bytes();
   for (int i = 0; i < 4; ++i) {
     const std::string text = sized(i % 2 == 0 ? "[400, 400]" : "[384, 384]");
     ASSERT_TRUE(world.upload(text).ok());
     const grpc::Status status = submitted(text);
     ASSERT_TRUE(status.ok()) << status.error_message();
   }
-  EXPECT_LT(resident_bytes(), before + (uint64_t{32} << 20U));
+  EXPECT_LT(test::resident_bytes(), before + (uint64_t{32} << 20U));
 }
 
 TEST_F(Limits, OfFramesThatAreNamedAgainAndAgain) {
