@@ -1,6 +1,8 @@
 #pragma once
 
+#include <cstdint>
 #include <string>
+#include <tuple>
 
 #include "cli/status_line.h"
 #include "coordinator/local/progress.h"
@@ -9,6 +11,9 @@ namespace hyades::cli {
 
 /// "37 %" of the samples, rounded down.
 std::string percent_done(const coordinator::Progress& progress);
+
+/// How far a run of that name is, in a line; `bar`: drawn too.
+std::string progress_line(const std::string& name, const coordinator::Progress& progress, bool bar);
 
 /// Shows how far a run is: one line that is redrawn on a terminal, plain lines now and then
 /// elsewhere, nothing where `quiet`. Writes to standard error.
@@ -23,12 +28,12 @@ class ProgressDisplay {
   void clear();
 
  private:
-  std::string line(const coordinator::Progress& progress) const;
-
   std::string name_;
   bool quiet_;
   StatusLine status_;
-  int last_percent_ = -1;
+  /// Percent, frames that are done, and whether some are being finished.
+  using Far = std::tuple<int, uint32_t, bool>;
+  Far told_far_{-1, 0, false};
   std::string told_;  ///< the last trouble that was printed
 };
 

@@ -88,6 +88,8 @@ class HYADES_PT_farm(bpy.types.Panel):
 
 def _lines(job: Any) -> list[str]:
     words = [f"{job.state}: {job.frames_done} of {job.frames} frames"]
+    if job.frames_finishing:
+        words[0] += f", {job.frames_finishing} finishing"
     if job.frames_failed:
         words[0] += f", {job.frames_failed} failed"
     if job.state == "running" and job.seconds_left >= 0:

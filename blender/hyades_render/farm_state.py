@@ -110,9 +110,9 @@ def _take_jobs(seen: Any) -> None:
         row.job_id, row.share = str(job.id), max(0.0, min(job.share, 1.0))
         state = "waiting" if job.waiting else job.state
         row.name, row.state, row.reason = (printable_lines(text)[:200] for text in (job.name, state, job.reason))
-        row.frames, row.frames_done, row.frames_failed, row.seconds_left = (
+        row.frames, row.frames_done, row.frames_failed, row.frames_finishing, row.seconds_left = (
             max(-_MOST_WHOLE, min(number, _MOST_WHOLE))
-            for number in (job.frames, job.frames_done, job.frames_failed, job.seconds_left)
+            for number in (job.frames, job.frames_done, job.frames_failed, job.frames_finishing, job.seconds_left)
         )
         row.noise = -1.0 if job.noise is None else min(job.noise, 1e30)
     if _previews is None or bpy.app.background:
@@ -147,6 +147,7 @@ class HyadesFarmJob(bpy.types.PropertyGroup):
     frames: bpy.props.IntProperty()
     frames_done: bpy.props.IntProperty()
     frames_failed: bpy.props.IntProperty()
+    frames_finishing: bpy.props.IntProperty()
     seconds_left: bpy.props.FloatProperty()
     noise: bpy.props.FloatProperty()
     reason: bpy.props.StringProperty()

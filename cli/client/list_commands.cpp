@@ -24,7 +24,8 @@ constexpr size_t kMostFrames = 20;  ///< told by status without --json or --fram
 
 std::string frames_text(const v1::Job& job) {
   std::string text = fmt::format("{}/{}", job.frames_done(), job.frames());
-  if (job.frames_failed() > 0) text += fmt::format(" ({} failed)", job.frames_failed());
+  if (job.frames_finishing() > 0) text += fmt::format(", {} finishing", job.frames_finishing());
+  if (job.frames_failed() > 0) text += fmt::format(", {} failed", job.frames_failed());
   return text;
 }
 

@@ -49,6 +49,7 @@ coordinator::Progress progress_of(const v1::Job& job) {
   progress.frames = job.frames();
   progress.frames_done = job.frames_done();
   progress.frames_failed = job.frames_failed();
+  progress.frames_finishing = job.frames_finishing();
   progress.samples = job.samples();
   progress.samples_done = job.samples_done();
   progress.samples_per_second = job.samples_per_second();

@@ -177,17 +177,25 @@ bool ActiveJob::account_has_grown() const {
 }
 
 bool ActiveJob::is_worked_on(uint32_t leased) const {
-  if (ending) return false;
-  return leased > 0 || making_videos ||
-         std::any_of(
-             in_work.begin(), in_work.end(), [this](int32_t frame) HYADES_REQUIRES(state_lock) {
-               const auto noted = frames.find(frame);
-               return noted != frames.end() && noted->second.state == v1::FRAME_STATE_FINISHING;
-             });
+  return !ending && (leased > 0 || making_videos || frames_finishing() > 0);
+}
+
+uint32_t ActiveJob::frames_finishing() const {
+  uint32_t finishing = 0;
+  for (const int32_t frame : in_work) {
+    const auto noted = frames.find(frame);
+    if (noted != frames.end() && noted->second.state == v1::FRAME_STATE_FINISHING) ++finishing;
+  }
+  return finishing;
+}
+
+void ActiveJob::note_finish(double seconds) {
+  constexpr double kNewest = 0.3;
+  finish_seconds += (finish_seconds > 0 ? kNewest : 1) * (seconds - finish_seconds);
 }
 
 bool ActiveJob::is_waiting(uint32_t leased) const {
-  return stored.state == StoredState::running && leased == 0 && !making_videos && !ending &&
+  return stored.state == StoredState::running && !ending && !is_worked_on(leased) &&
          samples_done + samples_spared < stored.samples;
 }
 
@@ -262,6 +270,8 @@ v1::Job ActiveJob::describe(uint32_t leased) const {
   if (const auto shown = preview_frame()) wire.set_preview_frame(*shown);
   if (threshold.adaptive()) wire.set_noise_aim(as_written(threshold.aim.noise));
   if (noise) wire.set_noise(*noise);
+  const uint32_t finishing = frames_finishing();
+  wire.set_frames_finishing(finishing);
   // Of one that nobody has in hand it is how fast it was once.
   if (speed.per_second() > 0 && leased > 0) {
     wire.set_samples_per_second(speed.per_second());
@@ -269,6 +279,12 @@ v1::Job ActiveJob::describe(uint32_t leased) const {
       wire.set_seconds_left(static_cast<double>(samples - std::min(samples_done, samples)) /
                             speed.per_second());
     }
+  }
+  // Frames are finished beside the rendering, one after the other: that may be what takes longest.
+  if (finish_seconds > 0 && (finishing > 0 || wire.seconds_left() >= 0)) {
+    const uint32_t over = stored.frames_done + stored.frames_failed;
+    const double to_finish = finish_seconds * (stored.frames - std::min(over, stored.frames));
+    wire.set_seconds_left(std::max(wire.seconds_left(), to_finish));
   }
   wire.set_waiting(is_waiting(leased));
   if (wire.waiting()) wire.set_reason(farm::wire_text(obstacle));

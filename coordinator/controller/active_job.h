@@ -112,6 +112,8 @@ struct ActiveJob {
   std::set<int32_t> black HYADES_GUARDED_BY(state_lock);   ///< done ones that no light has reached
   FailureReasons reasons HYADES_GUARDED_BY(state_lock);    ///< why these have
   Speed speed HYADES_GUARDED_BY(state_lock);
+  /// How long the outputs of a frame lately took to be made [seconds]; 0: not known.
+  double finish_seconds HYADES_GUARDED_BY(state_lock) = 0;
   /// Since when it has been worked on without a pause that is not in stored.busy_ns; none: nobody
   /// works on it.
   TimePoint busy_since HYADES_GUARDED_BY(state_lock);
@@ -147,7 +149,12 @@ struct ActiveJob {
   bool account_has_grown() const HYADES_REQUIRES(state_lock);
   /// Whether anybody does something for it, where `leased` of its units are with workers.
   bool is_worked_on(uint32_t leased) const HYADES_REQUIRES(state_lock);
-  /// Whether it runs, and has something left to be rendered of which nobody has any.
+  /// How many of its frames are rendered, and have their outputs made or wait for that.
+  uint32_t frames_finishing() const HYADES_REQUIRES(state_lock);
+  /// The outputs of one of its frames took so long to be made.
+  void note_finish(double seconds) HYADES_REQUIRES(state_lock);
+  /// Whether it runs, and has something left to be rendered of which nobody has any, and no frame
+  /// that is being finished.
   bool is_waiting(uint32_t leased) const HYADES_REQUIRES(state_lock);
   /// Something else of the job changes now.
   void touch() HYADES_REQUIRES(state_lock) { ++version; }

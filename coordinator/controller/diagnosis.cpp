@@ -117,6 +117,13 @@ bool Diagnosis::explain_open(uint64_t id, v1::ExplainResponse& response) {
   if (!out && may_begin && !orphans && active->stored.state == StoredState::running) {
     explain_rivals(*active, reasons);
   }
+  if (const uint32_t finishing = active->frames_finishing(); finishing > 0) {
+    reasons.say(core::counted(finishing, "frame") +
+                (finishing == 1
+                     ? " is rendered, and its outputs are being made (denoising takes longest)"
+                     : " are rendered: their outputs are made by the coordinator, one frame after "
+                       "the other (denoising takes longest)"));
+  }
   size_t in_work = 0;
   for (const int32_t number : active->in_work) {
     if (active->frames.at(number).state != v1::FRAME_STATE_WAITING) ++in_work;

@@ -119,10 +119,13 @@ bool FrameFinisher::finish(Completed& completed) {
       std::chrono::microseconds(std::max<int64_t>(core::wall_us() - begun_us, 0)));
   timelines_.note(static_cast<uint64_t>(completed.job),
                   {v1::TimelineStep::KIND_FINISH, {}, 0, all, begun_us, core::wall_us()});
-  if (ActiveJob* still = jobs_.find(completed.job); still != nullptr && over.black) {
-    still->black.insert(completed.frame);
-    jobs_.note(*still, v1::LOG_LEVEL_WARNING, completed.frame, {},
-               std::string("is ") + core::kBlackWords);
+  if (ActiveJob* still = jobs_.find(completed.job); still != nullptr) {
+    still->note_finish(1e-6 * static_cast<double>(core::wall_us() - begun_us));
+    if (over.black) {
+      still->black.insert(completed.frame);
+      jobs_.note(*still, v1::LOG_LEVEL_WARNING, completed.frame, {},
+                 std::string("is ") + core::kBlackWords);
+    }
   }
   turn.tell(FinishDone{completed.job, completed.frame});
   return true;

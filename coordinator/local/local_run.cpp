@@ -151,6 +151,7 @@ Progress LocalRun::progress() const {
     const core::MutexLock lock(mutex_);
     p = progress_;
     p.samples = expected_samples(p.samples_done, spared_, p.samples - spared_ - p.samples_done);
+    p.frames_finishing = static_cast<uint32_t>(complete_.size());
     p.frames_in_flight.assign(in_flight_.begin(), in_flight_.end());
     const TimePoint now = std::chrono::steady_clock::now();
     p.elapsed = seconds(now - started_);

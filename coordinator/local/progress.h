@@ -11,6 +11,7 @@ struct Progress {
   uint32_t frames = 0;  ///< in all
   uint32_t frames_done = 0;
   uint32_t frames_failed = 0;
+  uint32_t frames_finishing = 0;  ///< rendered, and their outputs are being made
   std::vector<int32_t> frames_in_flight;
   uint64_t samples = 0;       ///< of all frames that have not failed; an estimate where tiles stop
                               ///< at a noise

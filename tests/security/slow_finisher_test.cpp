@@ -64,6 +64,15 @@ TEST_F(SlowFinisher, IsWaitedForByNobodyElse) {
   EXPECT_EQ(begun().size(), 1U) << "of one owner's frames one is finished at a time";
 }
 
+TEST_F(SlowFinisher, IsWhatPeopleAreToldThatTheirJobsWaitFor) {
+  ASSERT_TRUE(eventually([&] { return world_.get(1).job().frames_finishing() == 1; }));
+  EXPECT_FALSE(world_.get(1).job().waiting()) << "it is worked on, though no worker has any of it";
+  v1::ExplainResponse why;
+  ASSERT_TRUE(world_.jobs->Explain(world_.context().get(), about(1), &why).ok());
+  ASSERT_GT(why.reasons_size(), 0);
+  EXPECT_NE(why.reasons(0).find("its outputs are being made"), std::string::npos) << why.reasons(0);
+}
+
 TEST_F(SlowFinisher, EndsWithItsJob) {
   const pid_t first = begun().front();
   v1::JobResponse now;

@@ -15,6 +15,7 @@ const GAP = 8;
 const FILTERS = [
   ['', 'All'],
   ['rendering', 'Rendering'],
+  ['finishing', 'Finishing'],
   ['waiting', 'Waiting'],
   ['done', 'Done'],
   ['failed', 'Failed'],
@@ -27,10 +28,7 @@ const FEW = 4;
 const TALLEST = 8e6;
 
 const fits = (frame, filter) =>
-  filter === '' ||
-  (filter === 'doubtful'
-    ? frame.doubtful
-    : frame.state === filter || (filter === 'rendering' && frame.state === 'finishing'));
+  filter === '' || (filter === 'doubtful' ? frame.doubtful : frame.state === filter);
 
 /** The grid of frames of `state` (job_state.js), with its filters and the map of all frames. */
 export class Frames {
@@ -148,11 +146,11 @@ export class Frames {
   }
 
   count() {
-    const counts = { '': 0, doubtful: 0, rendering: 0, waiting: 0, done: 0, failed: 0 };
+    const counts = { '': 0, doubtful: 0, rendering: 0, finishing: 0, waiting: 0, done: 0, failed: 0 };
     for (const frame of this.state.frames.values()) {
       ++counts[''];
       if (frame.doubtful) ++counts.doubtful;
-      counts[frame.state === 'finishing' ? 'rendering' : frame.state] += 1;
+      counts[frame.state] += 1;
     }
     for (const pill of this.pills.children) {
       const { filter } = pill.dataset;

@@ -18,7 +18,7 @@ import {
 } from './format.js';
 import { h, keyed, say, setText } from './dom.js';
 import { whyNotJob } from './me.js';
-import { leftOf, lookOf, share, tookOf, watchJob } from './job_state.js';
+import { leftOf, lookOf, otherFrames, share, tookOf, watchJob } from './job_state.js';
 import { TABS, to } from './router.js';
 import { documentTab } from './document.js';
 import { Frames } from './frames.js';
@@ -295,7 +295,7 @@ class JobView {
     figures.noise.set(`${noise(job.noise)}${job.noise_aim > 0 ? ` (aim ${noise(job.noise_aim)})` : ''}`);
     figures.noise.title = 'How far pixels are off on average, in parts of white: 0.02 is 2 % where the picture is white';
     figures.frames.set(
-      `${whole(job.frames_done)} / ${whole(job.frames)}${job.frames_failed ? `, ${whole(job.frames_failed)} failed` : ''}`,
+      `${whole(job.frames_done)} / ${whole(job.frames)}${otherFrames(job)}`,
     );
     const left = leftOf(job);
     const told = Number.isFinite(left);

@@ -123,6 +123,11 @@ export function watchJob(id, listener) {
 /** How much of a job is rendered, 0..1. */
 export const share = (job) => (job.samples > 0 ? Math.min(1, job.samples_done / job.samples) : 0);
 
+/** Of its frames those that are being finished, and that failed, for a line that begins with the done ones. */
+export const otherFrames = (job) =>
+  (job.frames_finishing ? `, ${whole(job.frames_finishing)} finishing` : '') +
+  (job.frames_failed ? `, ${whole(job.frames_failed)} failed` : '');
+
 /** What people call its state: that of one that runs, and waits, is 'waiting'. */
 export const lookOf = (job) => (job.waiting ? 'waiting' : job.state);
 

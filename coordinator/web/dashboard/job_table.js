@@ -5,7 +5,7 @@ import { h, setText } from './dom.js';
 import { askPriority } from './job_actions.js';
 import { farm, isOpen } from './farm_state.js';
 import { whyNotJob } from './me.js';
-import { leftOf, lookOf, share, tookOf } from './job_state.js';
+import { leftOf, lookOf, otherFrames, share, tookOf } from './job_state.js';
 import { stamp } from './preview.js';
 import { Table } from './table.js';
 import { to } from './router.js';
@@ -40,7 +40,7 @@ function progressCell(td, job) {
   const [gauge, text] = td.firstChild.children;
   gauge.set(share(job), { failed: job.frames > 0 ? job.frames_failed / job.frames : 0, state: job.state });
   setText(text, `${percent(share(job))} · ${whole(job.frames_done)}/${whole(job.frames)}`);
-  td.title = `${counted(job.frames, 'frame')}, ${whole(job.frames_done)} done${job.frames_failed ? `, ${whole(job.frames_failed)} failed` : ''}`;
+  td.title = `${counted(job.frames, 'frame')}, ${whole(job.frames_done)} done${otherFrames(job)}`;
 }
 
 const ORDER = { running: 0, waiting: 1, paused: 2, failed: 3, cancelled: 4, done: 5 };

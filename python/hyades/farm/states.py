@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, fields
-from typing import Any, TypeVar
+from typing import Any, TypeVar, cast
 
 from ..errors import FarmError
 
@@ -22,7 +22,7 @@ _WHOLE_END = 1 << 64  # coordinators count with 64 bits; of numbers without end 
 
 def read_state(kind: type[_State], row: Any) -> _State:
     """A row of an answer as one of the classes below; FarmError where it is none."""
-    known = {field.name: str(field.type) for field in fields(kind)}
+    known = {field.name: str(field.type) for field in fields(cast(Any, kind))}
     told = row if isinstance(row, dict) else {}
     values = {name: tuple(v) if isinstance(v, list) else v for name, v in told.items() if name in known}
     odd = [name for name, value in values.items() if not _is(known[name], value)]
@@ -61,6 +61,8 @@ class JobState:
     frames: int = 0
     frames_done: int = 0
     frames_failed: int = 0
+    frames_finishing: int = 0
+    """Rendered, and their outputs are being made."""
     samples: int = 0
     samples_done: int = 0
     leased: int = 0
@@ -91,7 +93,8 @@ class JobState:
     frame_rate: float = 0.0
     """At which its frames are a video in real time; 0: not known."""
     waiting: bool = False
-    """It is running and has something left to render, of which no worker has any: tables call its state waiting."""
+    """It is running and has something left to render, of which no worker has any, and no frame is being
+    finished: tables call its state waiting."""
 
     @property
     def ended(self) -> bool:
