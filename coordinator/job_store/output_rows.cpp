@@ -67,7 +67,7 @@ core::Result<std::vector<StoredOutput>> read_outputs(sqlite3* db, uint64_t job, 
 
 core::Result<std::vector<StoredOutput>> read_outputs_of(sqlite3* db, uint64_t job, int32_t frame) {
   Query rows(
-      db, std::string(kSelect) + "WHERE job = ?1 AND frame = ?2" + kJobIsThere + "ORDER BY path");
+      db, std::string(kSelect) + "WHERE job = ?1 AND frame = ?2" + kJobIsThere + "ORDER BY number");
   rows.bind(number(job)).bind(int64_t{frame});
   return read_all(rows);
 }
