@@ -114,7 +114,7 @@ core::Status JobFrames::check_outputs(const std::vector<int32_t>& frames, bool o
 }
 
 core::Status JobFrames::check_not_lessened(const std::vector<int32_t>& frames) const {
-  return cli::check_not_lessened(all_paths(frames), loaded_.asked,
+  return cli::check_not_lessened(all_paths(frames),
                                  {loaded_.job.sampling.samples, options_.window.area()});
 }
 

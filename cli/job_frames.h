@@ -54,8 +54,8 @@ class JobFrames : public coordinator::FrameSource, public coordinator::FrameSink
   /// and, but for `overwrite`, where some are there that another job has made, or another program.
   core::Status check_outputs(const std::vector<int32_t>& frames, bool overwrite) const;
 
-  /// An error where outputs of `frames` are there with all the samples and pixels that the job asks
-  /// for, and would be made with fewer.
+  /// An error where outputs of `frames` are there with more samples or pixels than would be made
+  /// now.
   core::Status check_not_lessened(const std::vector<int32_t>& frames) const;
 
   /// Opens the colour configuration, which write_outputs() needs.

@@ -19,7 +19,6 @@ namespace hyades::cli {
 struct LoadedJob {
   std::unique_ptr<BlendJob> blend;  ///< where the job was made of a .blend: has its files
   core::Job job;
-  PictureWork asked;  ///< of a frame, before the command line has changed anything
   std::unique_ptr<core::JobFiles> files;
   std::unique_ptr<core::RecordingResolver> assets;  ///< over `files`; knows what was opened
 };

@@ -165,13 +165,11 @@ core::Status check_own_files(const std::vector<std::string>& paths, const std::s
       others > 1 ? "files" : "file", job, others > 1 ? "them" : "it")};
 }
 
-core::Status check_not_lessened(const std::vector<std::string>& paths, const PictureWork& whole,
-                                const PictureWork& now) {
+core::Status check_not_lessened(const std::vector<std::string>& paths, const PictureWork& now) {
   for (const std::string& path : paths) {
     std::error_code none;
     if (!fs::is_regular_file(path, none)) continue;
     const PictureWork there = told_work(path);
-    if (there.samples < whole.samples || there.pixels < whole.pixels) continue;
     if (there.samples <= now.samples && there.pixels <= now.pixels) continue;
     const auto words = [](const PictureWork& work) {
       return fmt::format("{} in each of {}", core::counted(work.samples, "sample"),

@@ -22,10 +22,9 @@ struct PictureWork {
   int64_t pixels = 0;
 };
 
-/// An error where some of the files are pictures or films with all the samples and pixels that the
-/// job asks for, `whole`, and would be made anew with fewer, `now`: the first is named, as
-/// `--overwrite` replaces it. Those that do not say how they were made count as less.
-core::Status check_not_lessened(const std::vector<std::string>& paths, const PictureWork& whole,
-                                const PictureWork& now);
+/// An error where some of the files are pictures or films with more samples or pixels in them than
+/// would be made `now`: the first is named, as `--overwrite` replaces it. Those that do not say how
+/// they were made count as less.
+core::Status check_not_lessened(const std::vector<std::string>& paths, const PictureWork& now);
 
 }  // namespace hyades::cli

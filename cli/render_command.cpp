@@ -28,6 +28,7 @@
 #include "cli/render_options.h"
 #include "cli/time_limit.h"
 #include "cli/videos.h"
+#include "coordinator/film_store/film_log.h"
 #include "coordinator/local/local_run.h"
 #include "coordinator/scheduler/tile_grid.h"
 #include "core/base/atomic_file.h"
@@ -101,7 +102,7 @@ void note_kept(const RenderOptions& options, const FilmRoom& room) {
   if (!options.keep_work) return;
   std::fprintf(stderr,
                "what is done is kept: the same command goes on. Until a frame is written its film "
-               "lies in %s/.hyades, up to %s; --no-resume keeps none\n",
+               "lies in %s/.hyades, up to %s; --no-resume --restart keeps none\n",
                options.folder.c_str(), core::format_bytes(room.film).c_str());
 }
 
@@ -338,6 +339,21 @@ int finish_run(const RenderOptions& options, const core::Job& job,
   return 0;
 }
 
+/// A run that keeps nothing makes no use of what an earlier one has kept: that goes where it was
+/// asked for, and leaves its room on the disk.
+core::Status give_up_kept(const RenderOptions& options, const std::string& kept) {
+  std::error_code failed;
+  if (options.keep_work || !std::filesystem::exists(kept, failed)) return {};
+  if (!options.restart) {
+    return core::Error{kept +
+                       ": an earlier run has kept its work here; without --no-resume it is gone on "
+                       "with, --no-resume --restart gives it up"};
+  }
+  if (core::Status erased = coordinator::erase_film_log(kept); !erased) return erased;
+  remove_kept(options, kept);
+  return {};
+}
+
 coordinator::KeptFilms kept_films(const RenderOptions& options) {
   if (options.restart) return coordinator::KeptFilms::erase;
   return options.resume ? coordinator::KeptFilms::require : coordinator::KeptFilms::use;
@@ -361,8 +377,8 @@ core::Status keep_to_time(const RenderOptions& options, TimeLimit& limit, JobFra
   if (!chosen) return chosen.error();
   job.sampling.samples = *chosen;
   if (options.quiet) return {};
-  std::fprintf(stderr, "--time: %u samples per pixel (--samples %u renders the same)\n", *chosen,
-               *chosen);
+  std::fprintf(stderr, "--time: %s per pixel (--samples %u renders the same)\n",
+               core::counted(*chosen, "sample").c_str(), *chosen);
   return {};
 }
 
@@ -455,13 +471,14 @@ int render_command(int argc, char** argv) {
   if (const auto may = frames.check_outputs(*numbers, options.overwrite); !may) {
     return refuse(may.error());
   }
+  if (const auto gone = give_up_kept(options, kept); !gone) return refuse(gone.error());
   warn_of_full_disk(options, room, job, numbers->size());
   TimeLimit limit(options, kept + ".time", began);
   if (options.time > 0) {
     const auto chosen = keep_to_time(options, limit, frames, *numbers, loaded->job);
     if (!chosen) return refuse(chosen.error());
   }
-  if (options.is_trial() && !options.overwrite) {
+  if (options.preview == 0 && !options.overwrite) {
     if (const auto may = frames.check_not_lessened(*numbers); !may) return refuse(may.error());
   }
   return run_frames(options, job, room, *numbers, frames, note, limit, kept);

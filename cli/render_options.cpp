@@ -154,11 +154,12 @@ void declare_results(CLI::App& app, RenderOptions& options) {
                "render from the beginning, whatever an interrupted run has kept")
       ->excludes(resume);
   app.add_flag("!--no-resume", options.keep_work,
-               "keep nothing for a run that is interrupted: where the disk has no room for films")
+               "keep nothing for a run that is interrupted: where the disk has no room for films "
+               "(with --restart also where an earlier run has kept some)")
       ->excludes(resume);
   app.add_flag("--overwrite", options.overwrite,
-               "replace files that are there, whoever made them (default: those of this job, "
-               "but with --samples, --time, --size, --scale and --crop no whole ones by less)");
+               "replace files that are there, whoever made them (default: those of this job that "
+               "have no more samples or pixels in them)");
   app.add_flag("-q,--quiet", options.quiet, "show no progress");
   app.add_flag("--json", options.json,
                "for programs: print progress and what is written, a JSON object a line");
@@ -217,7 +218,6 @@ std::optional<LoadedJob> load_for_render(const RenderOptions& options) {
   auto loaded = load_job(options.path, scene);
   if (!loaded) return std::nullopt;
   core::Job& job = loaded->job;
-  loaded->asked = {job.sampling.samples, core::render_window(job.film).area()};
   resize_film(options.size, job.film);
   if (options.preview > 0) make_preview(job, options.preview);
   if (options.samples.of > 0) job.sampling.samples = options.samples.of;

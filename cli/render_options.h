@@ -41,12 +41,6 @@ struct RenderOptions {
 
   /// Whether only films are written, for others render the rest.
   bool is_part() const { return tile.has_value() || samples.range.has_value(); }
-
-  /// Whether pictures may be of fewer samples or pixels than the job asks for.
-  bool is_trial() const {
-    return preview == 0 &&
-           (samples.of > 0 || time > 0 || !size.size.empty() || size.scale > 0 || !crop.empty());
-  }
 };
 
 /// Exit status other than 0 where the arguments end the command.
