@@ -71,7 +71,11 @@ std::string in_our_words(const CLI::App& app, const CLI::ParseError& error) {
     return text;
   }
   static const std::regex missing("(\\S+) is required");
-  if (std::regex_match(text, parts, missing)) return parts[1].str() + " is missing";
+  if (std::regex_match(text, parts, missing)) {
+    const CLI::Option* option = app.get_option_no_throw(parts[1].str());
+    const std::string what = option != nullptr ? option->get_description() : "";
+    return parts[1].str() + " is missing" + (what.empty() ? "" : ": expected " + what);
+  }
   static const std::regex no_value("(\\S+): 1 required .* missing");
   if (std::regex_match(text, parts, no_value)) return parts[1].str() + ": expected a value";
   static const std::regex size("(\\S+): .* unit not recognized.*");

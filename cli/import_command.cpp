@@ -11,6 +11,7 @@
 #include "cli/scene_options.h"
 #include "core/base/printable.h"
 #include "core/base/text.h"
+#include "core/job/output_path.h"
 #include "core/job/scene_document.h"
 #include "import/write_scene_job.h"
 
@@ -58,6 +59,12 @@ int import_command(int argc, char** argv) {
   }
   if (request.job.empty()) {
     request.job = std::filesystem::path(request.scene).stem().string() + ".yaml";
+  }
+  const std::string extension = core::file_extension(request.job);
+  if (extension != ".yaml" && extension != ".yml") {
+    std::fprintf(stderr, "hyades import: %s: expected NAME.yaml\n",
+                 core::printable(request.job).c_str());
+    return kBadInput;
   }
   request.set = script_settings(set);
   if (missing_textures) request.missing = core::MissingTextures::magenta;

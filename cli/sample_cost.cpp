@@ -15,6 +15,7 @@ SampleCost measure_sample_cost(const core::FrameRenderer& renderer, const core::
                                int32_t frame, int threads, double seconds) {
   using Clock = std::chrono::steady_clock;
   constexpr int kPatch = 4;
+  constexpr double kMostWall = 4;
   const auto begin = Clock::now();
   const auto so_far = [begin] {
     return std::chrono::duration<double>(Clock::now() - begin).count();
@@ -33,7 +34,8 @@ SampleCost measure_sample_cost(const core::FrameRenderer& renderer, const core::
       const core::RenderedUnit unit = renderer.render({frame, patch, {0, 1}});
       samples += unit.counters.samples;
       if (!core::is_black(unit.film)) lit = true;
-    } while (so_far() < seconds);
+      // By its own processor time: where others use the machine too few patches would be tried.
+    } while (core::thread_seconds() - cpu_begin < seconds && so_far() < kMostWall * seconds);
     core_seconds += core::thread_seconds() - cpu_begin;
   };
   std::vector<std::thread> others;

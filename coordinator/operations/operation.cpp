@@ -7,10 +7,12 @@
 #include <utility>
 
 #include <google/protobuf/descriptor.h>
+#include <google/protobuf/text_format.h>
 
 #include "coordinator/access/audit_log.h"
 #include "coordinator/access/authority.h"
 #include "coordinator/operations/ownership.h"
+#include "farm/wire.h"
 
 namespace hyades::coordinator {
 namespace {
@@ -63,9 +65,25 @@ std::string audit_target(const Message& request, const Message& response) {
   return {};
 }
 
+/// Digests as people compare them.
+class HexBytes : public google::protobuf::TextFormat::FastFieldValuePrinter {
+ public:
+  void PrintBytes(const std::string& value,
+                  google::protobuf::TextFormat::BaseTextGenerator* out) const override {
+    out->PrintString(farm::hex_from_wire(value));
+  }
+};
+
 /// What a request says, in one line; nothing of one that is long.
 std::string audit_detail(const Message& request) {
-  return request.ByteSizeLong() > kMostDetail ? std::string() : request.ShortDebugString();
+  if (request.ByteSizeLong() > kMostDetail) return {};
+  google::protobuf::TextFormat::Printer printer;
+  printer.SetSingleLineMode(true);
+  printer.SetDefaultFieldValuePrinter(new HexBytes);  // the printer's own from now on
+  std::string text;
+  printer.PrintToString(request, &text);
+  while (text.ends_with(' ')) text.pop_back();
+  return text;
 }
 
 using Index = std::map<std::string_view, const Operation*>;

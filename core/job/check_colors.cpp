@@ -94,7 +94,8 @@ bool is_temperature(const Rgb& color) {
 void doubt(const std::string& whose, const Animated<Rgb>& color, std::vector<std::string>& doubts) {
   if (!color.is_constant()) return;
   const Rgb& c = color.constant;
-  const bool grey = c.r == c.g && c.g == c.b;
+  // A strength may well be written as a grey, but for white in bytes.
+  const bool grey = c.r == c.g && c.g == c.b && c.r != 255.0F;
   if (is_temperature(c)) {
     doubts.push_back(fmt::format(
         "{} has the colour {}, which is that many times white: expected '{}K' if it is the "

@@ -151,6 +151,9 @@ Result<SceneSections> GltfSource::sections(const SceneRequest& request) const {
   put_unless_empty(sections, "groups", objects->groups);
   put_unless_empty(sections, "objects", objects->section);
   put_unless_empty(sections, "lights", lights);
+  if (sections.empty() && model_->images.empty()) {
+    return model_->error("nothing is to be seen: expected nodes with meshes in its scene");
+  }
   out.sections = sections.node();
   out.bounds = objects->bounds;
   for (const std::string& note : notes) out.notes.push_back(model_->file + ": " + note);

@@ -49,6 +49,8 @@ class Run {
   explicit Run(const ScriptRequest& request)
       : request_(request),
         guard_(request.limits.seconds + request.limits.overtime,
+               printable(request.script) + ": the script has run for 10 s; it may take " +
+                   format_duration(request.limits.seconds) + " of processor time",
                printable(request.script) + ": the script takes more than " +
                    format_duration(request.limits.seconds) +
                    " of processor time, and can be interrupted only by ending the program"),

@@ -10,11 +10,12 @@ namespace hyades::core::lua {
 
 /// Ends the process (status 2) where the thread that made this takes more processor time than it
 /// may: one instruction of Lua may take hours (a table whose keys all collide), and nothing can
-/// interrupt it.
+/// interrupt it. Says once that it takes long, before.
 class TimeGuard {
  public:
-  /// `seconds`: from now on. `what`: the line that is printed then.
-  TimeGuard(double seconds, std::string what);
+  /// `seconds`: from now on. `what`: the line that is printed then; `slow`: the one after ten
+  /// seconds.
+  TimeGuard(double seconds, std::string slow, std::string what);
   ~TimeGuard();
   TimeGuard(const TimeGuard&) = delete;
   TimeGuard& operator=(const TimeGuard&) = delete;
@@ -23,7 +24,9 @@ class TimeGuard {
   void watch();
 
   clockid_t clock_{};
-  double end_ = 0.0;  ///< of the watched thread's processor time [s]
+  double slow_at_ = 0.0;  ///< of the watched thread's processor time [s]
+  double end_ = 0.0;      ///< of that
+  std::string slow_;      ///< empty: it has been said
   std::string what_;
   Mutex mutex_;
   CondVar wake_;
