@@ -62,6 +62,9 @@ constexpr std::chrono::milliseconds kRoomAgain{250};
 /// What may wait for a reader of what happens before it is broken off.
 constexpr size_t kMostWaitingBytes = size_t{8} << 20U;
 constexpr std::chrono::seconds kHeartbeat{15};
+/// One behind the other, without waiting for the answers, of who has shown no token. Browsers and
+/// proxies send none so; who means ill has each of a crowd's connections ask hundreds of times.
+constexpr int kMostAhead = 8;
 /// Of server-sent events: nothing to who reads them.
 constexpr const char* kComment = ":\n\n";
 /// How soon it is looked again whether there is news.
@@ -129,7 +132,11 @@ class ConnectionOver final : public Connection,
 
   /// What came with the request before may have begun one.
   void wait_for_request(std::chrono::seconds patience) {
-    if (buffer_.size() > 0) return read();
+    if (buffer_.size() > 0) {
+      ++ahead_;
+      return read();
+    }
+    ahead_ = 0;
     tcp(stream_).expires_after(patience);
     stream_.async_read_some(buffer_.prepare(kMostHeaderBytes),
                             [me = self()](ErrorCode error, size_t count) {
@@ -173,6 +180,8 @@ class ConnectionOver final : public Connection,
     const ConnectionWorld::Admitted admitted = world_.admit(request_);
     if (admitted.refusal) return send_away(*admitted.refusal);
     caller_ = request_.caller;
+    const bool stranger = caller_.role == v1::ROLE_UNSPECIFIED;
+    if (world_.one_request || (stranger && ahead_ >= kMostAhead)) keep_alive_ = false;
     take_body(admitted.most_bytes);
   }
 
@@ -508,6 +517,7 @@ class ConnectionOver final : public Connection,
   std::optional<farm::ByteBudget::Share> answer_share_;  ///< of what answers it
   unsigned version_ = 11;
   bool keep_alive_ = false;
+  int ahead_ = 0;  ///< requests that were there before the one before them was answered, in a row
   bool head_only_ = false;
   std::string known_;  ///< If-None-Match
   WebReply reply_;

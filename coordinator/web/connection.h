@@ -66,6 +66,8 @@ struct ConnectionWorld {
 
   // Of the network's thread.
   ConnectionCount count;
+  /// Whether a connection ends with the answer to its first request.
+  bool one_request = false;
   std::set<std::shared_ptr<Connection>> open{};
   /// What a reader may take for a piece of at most a megabyte.
   std::chrono::milliseconds send_patience{60'000};

@@ -48,6 +48,8 @@ constexpr size_t kFewerWithTls = 4;
 /// ... that it has however many there are.
 constexpr size_t kSureOfAddress = 8;
 constexpr std::chrono::milliseconds kAcceptAgain{200};
+/// Taken in at once, before those who are in have their turn again.
+constexpr int kMostAtOnce = 256;
 constexpr std::chrono::seconds kSweep{30};
 /// How soon certificates that have changed are noticed.
 constexpr std::chrono::seconds kLook{2};
@@ -92,6 +94,7 @@ struct WebServer::Parts {
         look(network) {
     add_health_routes(router, controller, executors);
     add_metrics(router, controller, executors);
+    world.one_request = serves == Serves::health;
     if (serves == Serves::health) return;
     add_dashboard(router);
     add_session(router);
@@ -181,6 +184,7 @@ struct WebServer::Parts {
       if (!error) close_on_exec(acceptor);
       if (!error) acceptor.set_option(tcp::acceptor::reuse_address(true), error);
       if (!error) acceptor.bind(endpoint, error);
+      if (!error) acceptor.non_blocking(true, error);
       if (!error) acceptor.listen(asio::socket_base::max_listen_connections, error);
     }
     if (error) {
@@ -190,19 +194,31 @@ struct WebServer::Parts {
   }
 
   void accept() {
-    acceptor.async_accept([this](boost::system::error_code error, tcp::socket socket) {
+    acceptor.async_wait(tcp::acceptor::wait_read, [this](boost::system::error_code error) {
       if (error == asio::error::operation_aborted) return;
-      if (!error && may_come(socket)) {
-        boost::system::error_code ignored;
-        close_on_exec(socket);
-        socket.set_option(tcp::no_delay(true), ignored);
-        make_connection(std::move(socket), tls, world)->begin();
-      }
+      if (!error) error = accept_all();
       if (!error) return accept();
       // No descriptors left, say.
       again.expires_after(kAcceptAgain);
       again.async_wait([this](boost::system::error_code) { accept(); });
     });
+  }
+
+  /// Those who wait outside. One at a time, with a turn for everybody inside in between, thousands
+  /// would wait for a minute.
+  boost::system::error_code accept_all() {
+    for (int taken = 0; taken < kMostAtOnce; ++taken) {
+      boost::system::error_code error;
+      tcp::socket socket = acceptor.accept(error);
+      if (error == asio::error::would_block || error == asio::error::try_again) return {};
+      if (error) return error;
+      if (!may_come(socket)) continue;
+      boost::system::error_code ignored;
+      close_on_exec(socket);
+      socket.set_option(tcp::no_delay(true), ignored);
+      make_connection(std::move(socket), tls, world)->begin();
+    }
+    return {};
   }
 
   bool may_come(const tcp::socket& socket) const {

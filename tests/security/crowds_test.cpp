@@ -192,5 +192,57 @@ TEST(Crowds, HealthHasAPlaceThatTheyDoNotReach) {
   EXPECT_EQ(client.get("/api/v1/jobs").status, 404) << "nothing else is there";
 }
 
+// Each had as many turns as it had sent requests, and of those outside one came in with each turn.
+TEST(Crowds, WhoAsksForMuchAtOnceKeepsNobodyWaiting) {
+  WebWorld world;
+  world.start();
+  std::string secret;
+  StoredToken row;
+  ASSERT_TRUE(world.farm.authority->create("root", v1::ROLE_ADMIN, 0, secret, row).ok());
+  farm::Listen listen = world.farm.how;
+  listen.address = "127.0.0.1:0";
+  auto health =
+      WebServer::start(listen, *world.farm.controller, *world.farm.authority, {}, Serves::health);
+  ASSERT_TRUE(health);
+  std::string many;
+  for (int i = 0; i < 400; ++i) many += "GET /healthz HTTP/1.1\r\nHost: localhost\r\n\r\n";
+  for (const std::string& url : {(*health)->url(), world.web->url()}) {
+    const SlowRequests crowd(url, 3000, many);
+    const auto asked = std::chrono::steady_clock::now();
+    EXPECT_EQ(HttpClient(url).get("/healthz").status, 200);
+    EXPECT_LT(std::chrono::steady_clock::now() - asked, 3s) << url;
+  }
+}
+
+TEST(Crowds, StrangersAskForLittleAtOnce) {
+  WebWorld world;
+  world.start();
+  std::string secret;
+  StoredToken row;
+  ASSERT_TRUE(world.farm.authority->create("root", v1::ROLE_ADMIN, 0, secret, row).ok());
+  farm::Listen listen = world.farm.how;
+  listen.address = "127.0.0.1:0";
+  auto health =
+      WebServer::start(listen, *world.farm.controller, *world.farm.authority, {}, Serves::health);
+  ASSERT_TRUE(health);
+  const auto answers = [](const std::string& url, const std::string& headers) {
+    std::string asked;
+    for (int i = 0; i < 40; ++i) asked += "GET /healthz HTTP/1.1\r\nHost: localhost\r\n" + headers;
+    const std::string all = HttpClient(url).exchange(
+        asked + "GET /healthz HTTP/1.1\r\nHost: localhost\r\nConnection: close\r\n" + headers);
+    int count = 0;
+    for (size_t at = 0; (at = all.find("HTTP/1.1 200", at)) != std::string::npos; ++at) ++count;
+    return count;
+  };
+  const std::string token = "Authorization: Bearer " + secret + "\r\n\r\n";
+  EXPECT_LE(answers((*health)->url(), token), 1);
+  EXPECT_LE(answers(world.web->url(), "\r\n"), 9);
+  EXPECT_EQ(answers(world.web->url(), token), 41) << "who has shown a token may";
+  const std::string said =
+      HttpClient((*health)->url()).exchange("GET /healthz HTTP/1.1\r\nHost: localhost\r\n\r\n");
+  EXPECT_EQ(said.substr(0, 12), "HTTP/1.1 200");
+  EXPECT_NE(said.find("Connection: close"), std::string::npos) << "the next comes anew";
+}
+
 }  // namespace
 }  // namespace hyades::coordinator
