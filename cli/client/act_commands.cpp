@@ -81,8 +81,7 @@ v1::JobRequest ask_of(uint64_t id) {
   return request;
 }
 
-template <class Method>
-int act(const char* command, const char* description, Method method, int argc, char** argv,
+int act(const char* command, const char* description, const char* method, int argc, char** argv,
         Namesakes namesakes = Namesakes::open) {
   ClientApp app(command, description);
   return for_each_job(app, namesakes, argc, argv,
@@ -97,23 +96,22 @@ int act(const char* command, const char* description, Method method, int argc, c
 }  // namespace
 
 int pause_command(int argc, char** argv) {
-  return act("pause", "Stops leasing units of jobs; those that are out go on.",
-             &v1::Jobs::Stub::Pause, argc, argv);
+  return act("pause", "Stops leasing units of jobs; those that are out go on.", "Jobs/Pause", argc,
+             argv);
 }
 
 int resume_command(int argc, char** argv) {
-  return act("resume", "Lets paused jobs go on.", &v1::Jobs::Stub::Resume, argc, argv);
+  return act("resume", "Lets paused jobs go on.", "Jobs/Resume", argc, argv);
 }
 
 int cancel_command(int argc, char** argv) {
-  return act("cancel", "Ends jobs; frames that are finished stay.", &v1::Jobs::Stub::Cancel, argc,
-             argv);
+  return act("cancel", "Ends jobs; frames that are finished stay.", "Jobs/Cancel", argc, argv);
 }
 
 int retry_command(int argc, char** argv) {
   return act("retry",
              "Takes up again the failed frames of jobs, or all that a cancelled job has left.",
-             &v1::Jobs::Stub::Retry, argc, argv, Namesakes::failed);
+             "Jobs/Retry", argc, argv, Namesakes::failed);
 }
 
 int delete_command(int argc, char** argv) {
@@ -122,7 +120,7 @@ int delete_command(int argc, char** argv) {
                       [](FarmClient& client, uint64_t id, v1::Job& after) {
                         after.set_id(id);
                         v1::DeleteJobResponse response;
-                        return client.call(&v1::Jobs::Stub::Delete, ask_of(id), response);
+                        return client.call("Jobs/Delete", ask_of(id), response);
                       });
 }
 
@@ -145,7 +143,7 @@ int priority_command(int argc, char** argv) {
                         request.set_job(id);
                         request.set_priority(priority);
                         v1::JobResponse response;
-                        auto failure = client.call(&v1::Jobs::Stub::SetPriority, request, response);
+                        auto failure = client.call("Jobs/SetPriority", request, response);
                         after = response.job();
                         return failure;
                       });

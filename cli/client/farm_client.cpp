@@ -11,6 +11,7 @@
 
 #include <fmt/format.h>
 
+#include "cli/client/byte_call.h"
 #include "core/base/hash.h"
 #include "core/base/printable.h"
 #include "core/base/text.h"
@@ -37,6 +38,18 @@ std::vector<std::string> hex_of(const v1::ErrorDetail& detail) {
     if (const auto sha = farm::digest_from_wire(digest)) names.push_back(core::to_hex(*sha));
   }
   return names;
+}
+
+grpc::Status call_once(const std::shared_ptr<grpc::Channel>& channel, grpc::ClientContext& context,
+                       const char* method, const google::protobuf::Message& request,
+                       google::protobuf::Message& response) {
+  response.Clear();
+  ByteCall call(channel, context, method);
+  (void)call.write(request, true);
+  const bool answered = call.read(response);
+  const grpc::Status status = call.finish();
+  if (!status.ok() || answered) return status;
+  return {grpc::StatusCode::INTERNAL, "the coordinator says nothing"};
 }
 
 }  // namespace
@@ -151,25 +164,29 @@ Outcome FarmClient::persist(milliseconds timeout,
   }
 }
 
-template <class Stub, class Request, class Message, class OnMessage>
-Outcome FarmClient::stream(std::unique_ptr<grpc::ClientReader<Message>> (Stub::*method)(
-                               grpc::ClientContext*, const Request&),
-                           const Request& request, milliseconds timeout,
-                           const OnMessage& on_message, const Outcome& stopped) {
-  Stub stub(channel_);
+Outcome FarmClient::call(const char* method, const google::protobuf::Message& request,
+                         google::protobuf::Message& response, milliseconds timeout) {
+  return persist(timeout, [&](grpc::ClientContext& context) {
+    return call_once(channel_, context, method, request, response);
+  });
+}
+
+template <class Message, class OnMessage>
+Outcome FarmClient::stream(const char* method, const google::protobuf::Message& request,
+                           milliseconds timeout, const OnMessage& on_message,
+                           const Outcome& stopped) {
   Outcome outcome = persist(timeout, [&](grpc::ClientContext& context) {
-    const auto reader = (stub.*method)(&context, request);
+    ByteCall call(channel_, context, method);
+    (void)call.write(request, true);
     Message message;
-    while (reader->Read(&message)) {
+    while (call.read(message)) {
       reached();
       if (on_message(message)) continue;
-      context.TryCancel();
-      while (reader->Read(&message)) {
-      }
-      (void)reader->Finish();
+      call.cancel();
+      (void)call.finish();
       return grpc::Status::OK;
     }
-    return reader->Finish();
+    return call.finish();
   });
   return stopped ? stopped : outcome;
 }
@@ -193,7 +210,7 @@ Outcome FarmClient::get(uint64_t job, v1::GetJobResponse& response) {
   v1::GetJobResponse part;
   uint64_t bytes = 0;
   do {
-    if (auto failure = call(&v1::Jobs::Stub::Get, request, part)) return failure;
+    if (auto failure = call("Jobs/Get", request, part)) return failure;
     if (auto failure = count_part(part, bytes)) return failure;
     response.mutable_job()->Swap(part.mutable_job());
     response.mutable_frames()->MergeFrom(part.frames());
@@ -206,14 +223,14 @@ Outcome FarmClient::watch(uint64_t job,
                           const std::function<bool(const v1::WatchEvent&)>& on_event) {
   v1::WatchRequest request;
   request.set_job(job);
-  return stream(&v1::Jobs::Stub::Watch, request, kAsLongAsItLives, on_event);
+  return stream<v1::WatchEvent>("Jobs/Watch", request, kAsLongAsItLives, on_event);
 }
 
 Outcome FarmClient::outputs(const v1::OutputsRequest& request,
                             const std::function<Outcome(const v1::OutputFile&)>& on_file) {
   Outcome stopped;
-  return stream(
-      &v1::Jobs::Stub::Outputs, request, request.follow() ? kAsLongAsItLives : kLongCall,
+  return stream<v1::OutputFile>(
+      "Jobs/Outputs", request, request.follow() ? kAsLongAsItLives : kLongCall,
       [&](const v1::OutputFile& file) { return !(stopped = on_file(file)); }, stopped);
 }
 
@@ -230,7 +247,7 @@ Outcome FarmClient::fetch(v1::FetchRequest request, uint64_t size,
     stopped = on_bytes(chunk.data());
     return !stopped;
   };
-  return stream(&v1::Jobs::Stub::Fetch, request, transfer_time(size), on_chunk, stopped);
+  return stream<v1::Chunk>("Jobs/Fetch", request, transfer_time(size), on_chunk, stopped);
 }
 
 core::FilmLimits FarmClient::film_limits(const std::string& packed) const {
@@ -245,8 +262,8 @@ Outcome FarmClient::film(uint64_t job, int32_t frame, v1::FilmHeader& header, st
   request.set_job(job);
   request.set_frame(frame);
   Outcome stopped;
-  return stream(
-      &v1::Jobs::Stub::Film, request, transfer_time(farm::kMaxResultBytes),
+  return stream<v1::FilmPart>(
+      "Jobs/Film", request, transfer_time(farm::kMaxResultBytes),
       [&](const v1::FilmPart& part) {
         if (part.has_header()) {  // the first message of each try
           header = part.header();
@@ -266,8 +283,8 @@ Outcome FarmClient::film(uint64_t job, int32_t frame, v1::FilmHeader& header, st
 
 Outcome FarmClient::logs(v1::LogsRequest request,
                          const std::function<void(const v1::LogLine&)>& on_line) {
-  return stream(
-      &v1::Jobs::Stub::Logs, request, request.follow() ? kAsLongAsItLives : kLongCall,
+  return stream<v1::LogLine>(
+      "Jobs/Logs", request, request.follow() ? kAsLongAsItLives : kLongCall,
       [&](const v1::LogLine& line) {
         on_line(line);
         request.set_after(line.number());  // after a break those told already do not come again
@@ -285,9 +302,7 @@ Outcome FarmClient::upload(const core::AssetRecord& file, std::istream& input, u
 
   grpc::ClientContext context;
   farm::prepare(context, token_, transfer_time(file.size));
-  v1::UploadResponse response;
-  v1::Assets::Stub stub(channel_);
-  const auto writer = stub.Upload(&context, &response);
+  ByteCall call(channel_, context, "Assets/Upload");
   v1::UploadPart part;
   part.set_sha256(farm::to_wire(*digest));
   part.set_size(file.size);
@@ -297,18 +312,20 @@ Outcome FarmClient::upload(const core::AssetRecord& file, std::istream& input, u
     data.resize(std::min(farm::kMaxChunkBytes, file.size - sent));
     input.read(data.data(), static_cast<std::streamsize>(data.size()));
     if (static_cast<size_t>(input.gcount()) != data.size()) {
-      context.TryCancel();
-      (void)writer->Finish();
+      call.cancel();
+      (void)call.finish();
       return changed;
     }
     part.mutable_chunk()->set_offset(sent);
-    if (!writer->Write(part)) break;
+    if (!call.write(part, false)) break;
     sent += data.size();
     on_progress(data.size());
     part.Clear();
   } while (sent < file.size);
-  writer->WritesDone();
-  const grpc::Status status = writer->Finish();
+  call.writes_done();
+  v1::UploadResponse response;
+  (void)call.read(response);
+  const grpc::Status status = call.finish();
   if (status.ok()) {
     reached();
     room_.reached();
@@ -327,10 +344,10 @@ Outcome FarmClient::create_token(const v1::CreateTokenRequest& request,
                                  v1::CreateTokenResponse& response) {
   // A call of no effect first: a coordinator that has just gone is waited for.
   v1::WhoAmIResponse me;
-  if (Outcome failed = call(&v1::Admin::Stub::WhoAmI, {}, me)) return failed;
+  if (Outcome failed = call("Admin/WhoAmI", v1::WhoAmIRequest(), me)) return failed;
   grpc::ClientContext context;
   farm::prepare(context, token_, kShortCall);
-  const grpc::Status status = v1::Admin::Stub(channel_).CreateToken(&context, request, &response);
+  const grpc::Status status = call_once(channel_, context, "Admin/CreateToken", request, response);
   return status.ok() ? Outcome() : failure(status);
 }
 
@@ -338,12 +355,12 @@ Outcome FarmClient::audit(int64_t since_ms,
                           const std::function<void(const v1::AuditEntry&)>& on_entry) {
   v1::AuditRequest request;
   request.set_since_ms(since_ms);
-  return stream(&v1::Admin::Stub::Audit, request, transfer_time(farm::kMaxResultBytes),
-                [&](const v1::AuditEntry& entry) {
-                  on_entry(entry);
-                  request.set_since_ms(entry.time_ms() + 1);
-                  return true;
-                });
+  return stream<v1::AuditEntry>("Admin/Audit", request, transfer_time(farm::kMaxResultBytes),
+                                [&](const v1::AuditEntry& entry) {
+                                  on_entry(entry);
+                                  request.set_since_ms(entry.time_ms() + 1);
+                                  return true;
+                                });
 }
 
 Outcome FarmClient::workers(v1::WorkersResponse& response) {
@@ -352,7 +369,7 @@ Outcome FarmClient::workers(v1::WorkersResponse& response) {
   uint64_t bytes = 0;
   for (;;) {
     v1::WorkersResponse page;
-    if (auto failure = call(&v1::Farm::Stub::Workers, request, page)) return failure;
+    if (auto failure = call("Farm/Workers", request, page)) return failure;
     if (auto failure = count_part(page, bytes)) return failure;
     for (v1::Worker& worker : *page.mutable_workers()) *response.add_workers() = std::move(worker);
     if (page.workers().empty() || page.next_after() <= request.after()) break;

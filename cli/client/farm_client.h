@@ -20,10 +20,10 @@
 #include "core/base/result.h"
 #include "core/film/film_codec.h"
 #include "farm/channel.h"
-#include "hyades/v1/admin.grpc.pb.h"
-#include "hyades/v1/assets.grpc.pb.h"
-#include "hyades/v1/farm.grpc.pb.h"
-#include "hyades/v1/jobs.grpc.pb.h"
+#include "hyades/v1/admin.pb.h"
+#include "hyades/v1/assets.pb.h"
+#include "hyades/v1/farm.pb.h"
+#include "hyades/v1/jobs.pb.h"
 
 namespace hyades::cli {
 
@@ -50,17 +50,9 @@ class FarmClient {
   /// Who tells the person that the coordinator is gone and tries go on; standard error if nobody.
   void on_notice(std::function<void(const std::string&)> tell) { tell_ = std::move(tell); }
 
-  /// One method of the wire, such as `&v1::Jobs::Stub::Pause`; a try takes `timeout` at most.
-  template <class Stub, class Request, class Response>
-  Outcome call(grpc::Status (Stub::*method)(grpc::ClientContext*, const Request&, Response*),
-               const Request& request, Response& response,
-               std::chrono::milliseconds timeout = kShortCall) {
-    Stub stub(channel_);
-    return persist(timeout, [&](grpc::ClientContext& context) {
-      response.Clear();
-      return (stub.*method)(&context, request, &response);
-    });
-  }
+  /// One method of the wire, such as "Jobs/Pause"; a try takes `timeout` at most.
+  Outcome call(const char* method, const google::protobuf::Message& request,
+               google::protobuf::Message& response, std::chrono::milliseconds timeout = kShortCall);
 
   /// What of a film may be kept, packed and unpacked together [bytes].
   core::FilmLimits film_limits(const std::string& packed) const;
@@ -117,11 +109,10 @@ class FarmClient {
                   const std::function<grpc::Status(grpc::ClientContext&)>& once);
   /// Every message of a server's stream until `on_message` returns false; an error that it leaves
   /// in `stopped` ends everything. Another try begins with the `request` as it is then.
-  template <class Stub, class Request, class Message, class OnMessage>
-  Outcome stream(std::unique_ptr<grpc::ClientReader<Message>> (Stub::*method)(grpc::ClientContext*,
-                                                                              const Request&),
-                 const Request& request, std::chrono::milliseconds timeout,
-                 const OnMessage& on_message, const Outcome& stopped = std::nullopt);
+  template <class Message, class OnMessage>
+  Outcome stream(const char* method, const google::protobuf::Message& request,
+                 std::chrono::milliseconds timeout, const OnMessage& on_message,
+                 const Outcome& stopped = std::nullopt);
 
   const ClientOptions options_;
   const std::string token_;

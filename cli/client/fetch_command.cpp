@@ -51,7 +51,7 @@ Outcome name_job(FarmClient& client, uint64_t id, std::string& name) {
   request.set_job(id);
   request.set_after(INT32_MAX);  // none of its frames
   v1::GetJobResponse response;
-  if (auto failure = client.call(&v1::Jobs::Stub::Get, request, response)) return failure;
+  if (auto failure = client.call("Jobs/Get", request, response)) return failure;
   name = fmt::format("{} {}", id, response.job().submitted_ms());
   return std::nullopt;
 }

@@ -55,7 +55,7 @@ Outcome list_all_jobs(FarmClient& client, bool ended, const std::string& owner,
   v1::ListJobsResponse response;
   uint64_t bytes = 0;
   do {
-    if (auto failure = client.call(&v1::Jobs::Stub::List, request, response)) return failure;
+    if (auto failure = client.call("Jobs/List", request, response)) return failure;
     if (auto failure = client.count_part(response, bytes)) return failure;
     jobs.insert(jobs.end(), response.jobs().begin(), response.jobs().end());
     request.set_before(response.next_before());
@@ -71,7 +71,7 @@ Outcome list_latest_jobs(FarmClient& client, size_t most, const std::string& own
   request.set_owner(owner);
   request.set_limit(200);
   v1::ListJobsResponse response;
-  if (auto failure = client.call(&v1::Jobs::Stub::List, request, response)) return failure;
+  if (auto failure = client.call("Jobs/List", request, response)) return failure;
   std::vector<v1::Job> over(response.jobs().begin(), response.jobs().end());
   std::erase_if(over, [](const v1::Job& job) { return !farm::has_ended(job); });
   const auto later = [](const v1::Job& a, const v1::Job& b) { return a.ended_ms() > b.ended_ms(); };

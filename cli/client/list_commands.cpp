@@ -197,9 +197,8 @@ int jobs_command(int argc, char** argv) {
     return app.report(*failure);
   }
   if (json) {
-    Json list = Json::array();
-    for (const v1::Job& job : jobs) list.push_back(to_json(job));
-    print_json(list);
+    print_json_rows(jobs);
+    std::printf("\n");
   } else if (names) {
     print_names(jobs, command);
   } else if (jobs.empty()) {
@@ -232,8 +231,12 @@ int status_command(int argc, char** argv) {
   }
   Json out = to_json(response.job());
   out["frame_list"] = Json::array();
-  for (const v1::Frame& frame : response.frames()) out["frame_list"].push_back(to_json(frame));
-  print_json(out);
+  const std::string text = json_line(out);
+  const std::string list = "\"frame_list\":";  // in no string: its quotes would be escaped
+  const size_t at = text.find(list + "[]") + list.size();
+  std::printf("%s", text.substr(0, at).c_str());
+  print_json_rows(response.frames());
+  std::printf("%s\n", text.substr(at + 2).c_str());
   return kDone;
 }
 
@@ -252,7 +255,7 @@ int explain_command(int argc, char** argv) {
   v1::JobRequest request;
   request.set_job(id);
   v1::ExplainResponse response;
-  if (auto failure = client->call(&v1::Jobs::Stub::Explain, request, response)) {
+  if (auto failure = client->call("Jobs/Explain", request, response)) {
     return app.report(*failure);
   }
   if (json) {

@@ -20,11 +20,13 @@ size_t columns_of(const std::string& text) {
 
 }  // namespace
 
-void print_json(const Json& json) {
+std::string json_line(const Json& json) {
   // What is no ASCII is escaped, for names may turn a terminal's text around; what is no UTF-8
   // becomes a replacement character, not an exception.
-  std::printf("%s\n", json.dump(-1, ' ', true, Json::error_handler_t::replace).c_str());
+  return json.dump(-1, ' ', true, Json::error_handler_t::replace);
 }
+
+void print_json(const Json& json) { std::printf("%s\n", json_line(json).c_str()); }
 
 std::string job_look(const v1::Job& job) {
   return job.waiting() ? "waiting" : state_name(job.state());

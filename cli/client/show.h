@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <cstdio>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -16,8 +17,23 @@ using farm::level_name;
 using farm::state_name;
 using farm::to_json;
 
+/// JSON in one line, in ASCII.
+std::string json_line(const Json& json);
+
 /// Prints JSON in one line to standard output.
 void print_json(const Json& json);
+
+/// Prints an array of rows, messages of the wire, without an end of line. One at a time: as JSON a
+/// row takes many times its memory.
+template <class Rows>
+void print_json_rows(const Rows& rows) {
+  const char* before = "[";
+  for (const auto& row : rows) {
+    std::printf("%s%s", before, json_line(to_json(row)).c_str());
+    before = ",";
+  }
+  std::printf("%s]", rows.empty() ? "[" : "");
+}
 
 /// What people call a job's state: that of one that runs, and waits, is "waiting".
 std::string job_look(const v1::Job& job);

@@ -165,8 +165,7 @@ Outcome submit(FarmClient& client, const farm::JobPackage& package, core::JobFil
                const v1::SubmitRequest& request, bool quiet, v1::SubmitResponse& response) {
   for (int round = 1;; ++round) {
     if (auto failure = upload_missing(client, package, files, quiet)) return failure;
-    const auto failure =
-        client.call(&v1::Jobs::Stub::Submit, request, response, FarmClient::kLongCall);
+    const auto failure = client.call("Jobs/Submit", request, response, FarmClient::kLongCall);
     if (!failure) return std::nullopt;
     // Files that were there may have been removed since, with the last job that had them.
     if (failure->missing.empty() || round == kMostUploads) return failure;
@@ -197,7 +196,7 @@ void tell_files_elsewhere(const farm::JobPackage& package, const std::string& jo
 void tell_expiry(const ClientApp& app) {
   const auto client = app.connect_impatiently();
   v1::WhoAmIResponse me;
-  if (!client || client->call(&v1::Admin::Stub::WhoAmI, {}, me)) return;
+  if (!client || client->call("Admin/WhoAmI", v1::WhoAmIRequest(), me)) return;
   const std::string when = farm::expiry_warning({me.expires_ms(), me.warn_ms()}, core::wall_ms());
   if (when.empty()) return;
   std::fprintf(stderr, "hyades submit: WARNING: your token %s: ask an admin for another\n",

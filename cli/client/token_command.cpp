@@ -71,13 +71,17 @@ class RemoteTokens final : public Tokens {
     return failed;
   }
   Outcome list(v1::ListTokensResponse& tokens) override {
-    return client_->call(&v1::Admin::Stub::ListTokens, {}, tokens);
+    uint64_t bytes = 0;
+    if (Outcome failed = client_->call("Admin/ListTokens", v1::ListTokensRequest(), tokens)) {
+      return failed;
+    }
+    return client_->count_part(tokens, bytes);
   }
   Outcome revoke(const std::string& id, v1::Token& token) override {
     v1::RevokeTokenRequest request;
     request.set_id(id);
     v1::RevokeTokenResponse response;
-    Outcome failed = client_->call(&v1::Admin::Stub::RevokeToken, request, response);
+    Outcome failed = client_->call("Admin/RevokeToken", request, response);
     token = response.token();
     return failed;
   }
@@ -340,7 +344,8 @@ int whoami(const ClientApp& app, const TokenOptions& options) {
   const auto client = app.connect();
   if (!client) return kBadArguments;
   v1::WhoAmIResponse me;
-  if (auto failure = client->call(&v1::Admin::Stub::WhoAmI, {}, me)) return app.report(*failure);
+  if (auto failure = client->call("Admin/WhoAmI", v1::WhoAmIRequest(), me))
+    return app.report(*failure);
   if (options.json) {
     print_json({{"guarded", me.guarded()},
                 {"role", farm::role_name(me.role())},

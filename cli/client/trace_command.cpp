@@ -54,7 +54,7 @@ Outcome get_job(FarmClient& client, uint64_t id, v1::Job& job) {
   request.set_limit(1);
   request.set_before(id + 1);
   v1::ListJobsResponse response;
-  if (auto failure = client.call(&v1::Jobs::Stub::List, request, response)) return failure;
+  if (auto failure = client.call("Jobs/List", request, response)) return failure;
   if (response.jobs().empty() || response.jobs(0).id() != id) {
     return Failure{kUnknown, fmt::format("there is no job {} any more", id)};
   }
@@ -66,7 +66,7 @@ Outcome get_job(FarmClient& client, uint64_t id, v1::Job& job) {
 /// does this; the trace is what was asked for.
 void tell_what_is_lost(FarmClient& client, const v1::Job& job) {
   v1::InfoResponse coordinator;
-  if (!client.call(&v1::Farm::Stub::Info, {}, coordinator) &&
+  if (!client.call("Farm/Info", v1::InfoRequest(), coordinator) &&
       coordinator.started_ms() > job.submitted_ms()) {
     std::fprintf(stderr,
                  "the coordinator was started again after job %lu was submitted: what was done "
@@ -86,7 +86,7 @@ Outcome write_trace(FarmClient& client, uint64_t id, bool follow, std::ostream& 
     if (auto failure = get_job(client, id, job)) return failure;
     v1::ListTimelineResponse page;
     do {
-      if (auto failure = client.call(&v1::Jobs::Stub::ListTimeline, request, page)) return failure;
+      if (auto failure = client.call("Jobs/ListTimeline", request, page)) return failure;
       if (std::exchange(begins, false) && page.dropped() > 0) {
         std::fprintf(stderr,
                      "%lu older steps are not kept by the coordinator: the trace begins later\n",

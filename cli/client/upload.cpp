@@ -44,7 +44,7 @@ Outcome ask(FarmClient& client, const std::vector<AssetRecord>& files,
       by_digest[asked.sha256()] = &files[i];
     }
     v1::FindMissingResponse response;
-    if (auto failure = client.call(&v1::Assets::Stub::FindMissing, request, response))
+    if (auto failure = client.call("Assets/FindMissing", request, response))
       return failure;
     for (const auto& one : response.missing()) {
       const auto found = by_digest.find(one.sha256());

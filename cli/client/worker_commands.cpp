@@ -50,8 +50,7 @@ std::string near_workers(FarmClient& client, const std::string& name) {
   return near.empty() ? " (hyades workers lists them)" : near;
 }
 
-template <class Method>
-int act_on_worker(const char* command, const char* description, Method method, int argc,
+int act_on_worker(const char* command, const char* description, const char* method, int argc,
                   char** argv) {
   ClientApp app(command, description);
   std::vector<std::string> names;
@@ -106,9 +105,8 @@ int workers_command(int argc, char** argv) {
   v1::WorkersResponse response;
   if (auto failure = client->workers(response)) return app.report(*failure);
   if (json) {
-    Json list = Json::array();
-    for (const v1::Worker& worker : response.workers()) list.push_back(to_json(worker));
-    print_json(list);
+    print_json_rows(response.workers());
+    std::printf("\n");
   } else if (names) {
     for (const v1::Worker& worker : response.workers()) {
       std::printf("%s\n", core::printable(worker.name()).c_str());
@@ -124,18 +122,18 @@ int workers_command(int argc, char** argv) {
 int drain_command(int argc, char** argv) {
   return act_on_worker("drain",
                        "Gives workers no more work; they deliver what they have and leave.",
-                       &v1::Farm::Stub::DrainWorker, argc, argv);
+                       "Farm/DrainWorker", argc, argv);
 }
 
 int quarantine_command(int argc, char** argv) {
   return act_on_worker("quarantine",
                        "Gives workers no more work and refuses what they have not delivered yet.",
-                       &v1::Farm::Stub::QuarantineWorker, argc, argv);
+                       "Farm/QuarantineWorker", argc, argv);
 }
 
 int release_command(int argc, char** argv) {
-  return act_on_worker("release", "Ends the quarantine of workers.", &v1::Farm::Stub::ReleaseWorker,
-                       argc, argv);
+  return act_on_worker("release", "Ends the quarantine of workers.", "Farm/ReleaseWorker", argc,
+                       argv);
 }
 
 }  // namespace hyades::cli

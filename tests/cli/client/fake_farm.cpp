@@ -65,6 +65,11 @@ struct FakeFarm::JobsService : v1::Jobs::Service {
       response->set_next_before(request->before() - 1);
       return Status::OK;
     }
+    if (farm.turns) {
+      response->add_jobs()->set_id(7);
+      response->set_next_before(7);
+      return Status::OK;
+    }
     const int page = request->limit() != 0 ? static_cast<int>(request->limit())
                                            : 2;  // small, so that paging is tried
     for (auto job = farm.jobs.rbegin(); job != farm.jobs.rend(); ++job) {
@@ -88,6 +93,7 @@ struct FakeFarm::JobsService : v1::Jobs::Service {
     if (Status s = farm.find(request->job(), job); !s.ok()) return s;
     *response->mutable_job() = *job;
     for (const v1::Frame& frame : farm.frames) *response->add_frames() = frame;
+    response->set_more(farm.turns);
     if (farm.endless) {
       v1::Frame& frame = *response->add_frames();
       frame.set_frame(request->after() + 1);
@@ -220,6 +226,18 @@ struct FakeFarm::JobsService : v1::Jobs::Service {
     const std::lock_guard lock(farm.mutex_);
     if (Status s = farm.enter(*context); !s.ok()) return s;
     constexpr int kPage = 700;
+    for (int i = 1; farm.endless_steps && i <= kPage; ++i) {
+      v1::TimelineStep& step = *response->add_steps();
+      step.set_number(request->after() + static_cast<uint64_t>(i));
+      step.set_kind(v1::TimelineStep::KIND_RENDER);
+      step.set_worker(std::to_string(step.number()) + kPadding.substr(0, 2000));
+      response->set_more(true);
+    }
+    if (farm.same_steps) {
+      response->add_steps()->set_number(1);
+      response->set_more(true);
+      return Status::OK;
+    }
     for (const v1::TimelineStep& step : farm.steps) {
       if (step.number() <= request->after()) continue;
       response->set_more(response->steps_size() == kPage);
@@ -273,6 +291,7 @@ struct FakeFarm::AssetsService : v1::Assets::Service {
       auto& missing = *response->add_missing();
       missing.set_sha256(file.sha256());
       missing.set_offset(farm.partial[file.sha256()].size());
+      if (farm.asks_twice) *response->add_missing() = missing;
     }
     return Status::OK;
   }
@@ -281,6 +300,7 @@ struct FakeFarm::AssetsService : v1::Assets::Service {
                 v1::UploadResponse*) override {
     const std::lock_guard lock(farm.mutex_);
     if (Status s = farm.enter(*context); !s.ok()) return s;
+    if (farm.no_uploads) return {StatusCode::UNAVAILABLE, "not now"};
     v1::UploadPart part;
     std::string digest;
     uint64_t size = 0;
@@ -365,15 +385,31 @@ struct FakeFarm::FarmService : v1::Farm::Service {
   FakeFarm& farm;
 };
 
+struct FakeFarm::AdminService : v1::Admin::Service {
+  explicit AdminService(FakeFarm& owner) : farm(owner) {}
+
+  Status Audit(ServerContext* context, const v1::AuditRequest*,
+               grpc::ServerWriter<v1::AuditEntry>* writer) override {
+    const std::lock_guard lock(farm.mutex_);
+    if (Status s = farm.enter(*context); !s.ok()) return s;
+    for (const v1::AuditEntry& entry : farm.audited) writer->Write(entry);
+    return Status::OK;
+  }
+
+  FakeFarm& farm;
+};
+
 FakeFarm::FakeFarm()
     : jobs_service_(std::make_unique<JobsService>(*this)),
       assets_service_(std::make_unique<AssetsService>(*this)),
-      farm_service_(std::make_unique<FarmService>(*this)) {
+      farm_service_(std::make_unique<FarmService>(*this)),
+      admin_service_(std::make_unique<AdminService>(*this)) {
   grpc::ServerBuilder builder;
   builder.AddListeningPort("127.0.0.1:0", grpc::InsecureServerCredentials(), &port_);
   builder.RegisterService(jobs_service_.get());
   builder.RegisterService(assets_service_.get());
   builder.RegisterService(farm_service_.get());
+  builder.RegisterService(admin_service_.get());
   server_ = builder.BuildAndStart();
 }
 

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "core/film/film.h"
+#include "hyades/v1/admin.grpc.pb.h"
 #include "hyades/v1/assets.grpc.pb.h"
 #include "hyades/v1/farm.grpc.pb.h"
 #include "hyades/v1/jobs.grpc.pb.h"
@@ -41,6 +42,7 @@ class FakeFarm {
   int32_t frame_of_outputs = 0;
   std::vector<v1::SubmitRequest> submitted;
   std::vector<v1::Worker> workers;
+  std::vector<v1::AuditEntry> audited;  ///< oldest first
 
   int unavailable = 0;  ///< so many calls fail with UNAVAILABLE first
   int full = 0;         ///< so many calls fail with RESOURCE_EXHAUSTED and these words
@@ -53,6 +55,11 @@ class FakeFarm {
   bool damage_fetch = false;   ///< every fetched byte is wrong
   bool endless = false;        ///< lists have always one more page, films one more byte
   bool packs = false;          ///< answers are compressed
+  bool turns = false;          ///< lists have always one more page, which is the same one
+  bool endless_steps = false;  ///< always one more page of steps, each of another worker
+  bool same_steps = false;     ///< ... of the same one
+  bool asks_twice = false;     ///< FindMissing names what is missing twice
+  bool no_uploads = false;     ///< Upload fails with UNAVAILABLE, and nothing else does
   int calls = 0;
   uint64_t fetched = 0;  ///< bytes that Fetch has sent
   uint64_t uploaded = 0;
@@ -61,6 +68,7 @@ class FakeFarm {
   struct JobsService;
   struct AssetsService;
   struct FarmService;
+  struct AdminService;
 
   grpc::Status enter(const grpc::ServerContext& context);
   grpc::Status find(uint64_t id, v1::Job*& job);
@@ -69,6 +77,7 @@ class FakeFarm {
   std::unique_ptr<JobsService> jobs_service_;
   std::unique_ptr<AssetsService> assets_service_;
   std::unique_ptr<FarmService> farm_service_;
+  std::unique_ptr<AdminService> admin_service_;
   std::unique_ptr<grpc::Server> server_;
   int port_ = 0;
 };
