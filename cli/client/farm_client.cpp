@@ -282,13 +282,12 @@ Outcome FarmClient::film(uint64_t job, int32_t frame, v1::FilmHeader& header, st
 }
 
 Outcome FarmClient::logs(v1::LogsRequest request,
-                         const std::function<void(const v1::LogLine&)>& on_line) {
+                         const std::function<bool(const v1::LogLine&)>& on_line) {
   return stream<v1::LogLine>(
       "Jobs/Logs", request, request.follow() ? kAsLongAsItLives : kLongCall,
       [&](const v1::LogLine& line) {
-        on_line(line);
         request.set_after(line.number());  // after a break those told already do not come again
-        return true;
+        return on_line(line);
       });
 }
 

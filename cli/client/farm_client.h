@@ -79,7 +79,8 @@ class FarmClient {
   Outcome film(uint64_t job, int32_t frame, v1::FilmHeader& header, std::string& bytes,
                const std::function<void(uint64_t)>& on_progress = {});
 
-  Outcome logs(v1::LogsRequest request, const std::function<void(const v1::LogLine&)>& on_line);
+  /// Calls `on_line` until it returns false or the log ends.
+  Outcome logs(v1::LogsRequest request, const std::function<bool(const v1::LogLine&)>& on_line);
 
   /// One try to send `input`, the bytes of `file`, from `offset` on. `on_progress` hears how many
   /// more bytes have gone.

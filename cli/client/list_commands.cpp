@@ -302,6 +302,7 @@ int logs_command(int argc, char** argv) {
       print_log_line(line);
     }
     std::fflush(stdout);
+    return true;
   });
   return failure ? app.report(*failure) : kDone;
 }

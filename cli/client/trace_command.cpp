@@ -28,6 +28,11 @@ namespace {
 
 constexpr auto kLook = std::chrono::seconds(1);
 constexpr auto kGlance = std::chrono::milliseconds(50);
+/// Taken until there are no more: twice what a coordinator keeps
+/// (coordinator/controller/timeline.h), for more may come meanwhile.
+constexpr int kMostSteps = 80'000;
+/// Lines of a job's log: what a coordinator keeps, and those that come meanwhile.
+constexpr int kMostLines = 100'000;
 
 volatile std::sig_atomic_t g_trace_ends = 0;
 
@@ -85,6 +90,7 @@ Outcome write_trace(FarmClient& client, uint64_t id, bool follow, std::ostream& 
     // Asked for first: what came until the job ended is then in the steps that follow.
     if (auto failure = get_job(client, id, job)) return failure;
     v1::ListTimelineResponse page;
+    int steps = 0;
     do {
       if (auto failure = client.call("Jobs/ListTimeline", request, page)) return failure;
       if (std::exchange(begins, false) && page.dropped() > 0) {
@@ -93,6 +99,12 @@ Outcome write_trace(FarmClient& client, uint64_t id, bool follow, std::ostream& 
                      page.dropped());
       }
       for (const v1::TimelineStep& step : page.steps()) {
+        if (step.number() <= request.after()) {
+          return Failure{kFailed, "the coordinator tells steps whose numbers do not grow"};
+        }
+        if (++steps > kMostSteps) {
+          return Failure{kFailed, "the coordinator tells more steps than one keeps"};
+        }
         writer.take(step);
         request.set_after(step.number());
       }
@@ -104,7 +116,17 @@ Outcome write_trace(FarmClient& client, uint64_t id, bool follow, std::ostream& 
   }
   v1::LogsRequest logs;
   logs.set_job(id);
-  return client.logs(logs, [&](const v1::LogLine& one) { writer.take(one); });
+  int lines = 0;
+  Outcome too_many;
+  const auto failure = client.logs(logs, [&](const v1::LogLine& one) {
+    if (++lines > kMostLines) {
+      too_many = Failure{kFailed, "the coordinator tells more lines of a log than one keeps"};
+      return false;
+    }
+    writer.take(one);
+    return true;
+  });
+  return too_many ? too_many : failure;
 }
 
 }  // namespace

@@ -23,7 +23,12 @@ constexpr int kVideoThread = 200;
 constexpr int kUntoldThread = 10'000;
 constexpr int kMostLanes = 64;
 constexpr size_t kMostHeld = 20'000;
+/// What a coordinator may tell, be it hostile, and what is kept of it.
+constexpr size_t kMostWorkers = 20'000;
+constexpr size_t kMostNameBytes = 200;
 constexpr int64_t kSecond = 1'000'000;
+/// Who has the slices of workers beyond kMostWorkers.
+const std::string kOtherWorkers = "others";
 
 }  // namespace
 
@@ -47,7 +52,8 @@ void TraceWriter::write(const Json& event) {
 }
 
 TraceWriter::Process& TraceWriter::worker(const std::string& name) {
-  const auto [entry, fresh] = workers_.try_emplace(name);
+  const bool room = workers_.size() < kMostWorkers || workers_.contains(name);
+  const auto [entry, fresh] = workers_.try_emplace(room ? name : kOtherWorkers);
   if (fresh) {
     entry->second.pid = kCoordinator + static_cast<int>(workers_.size());
     write({{"ph", "M"},
@@ -97,10 +103,15 @@ int TraceWriter::told_thread(Process& process, const v1::TimelineStep& step) {
   return thread;
 }
 
-void TraceWriter::take(const v1::TimelineStep& step) {
+void TraceWriter::take(const v1::TimelineStep& told) {
+  v1::TimelineStep step = told;
+  // Another string: one that is only shortened keeps its memory.
+  if (told.worker().size() > kMostNameBytes) {
+    *step.mutable_worker() = told.worker().substr(0, kMostNameBytes);
+  }
   if (holding_) learn_samples(step);
   if (holding_) {
-    held_.push_back(step);
+    held_.push_back(std::move(step));
     if (held_.size() >= kMostHeld) flush_held();
     return;
   }
@@ -231,7 +242,7 @@ void TraceWriter::write_rate(int64_t second, uint64_t samples) {
 
 void TraceWriter::take(const v1::LogLine& line) {
   if (holding_) flush_held();
-  const auto known = workers_.find(line.worker());
+  const auto known = workers_.find(line.worker().substr(0, kMostNameBytes));
   Json arguments = {{"level", farm::level_name(line.level())}};
   if (!line.worker().empty()) arguments["worker"] = line.worker();
   if (line.of_frame()) arguments["frame"] = line.frame();

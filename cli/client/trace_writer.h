@@ -15,7 +15,7 @@ namespace hyades::cli {
 /// tracing open: a process for each worker with its threads, one for the coordinator; a slice for
 /// each unit, merge, finished frame and video; instants out of the job's log; samples per second.
 /// Takes steps in the coordinator's order and writes as they come: what it keeps does not grow with
-/// them.
+/// them. Names of workers are cut to 200 bytes, and of more than 20,000 workers the rest are one.
 class TraceWriter {
  public:
   /// `job` as it is now.

@@ -131,10 +131,13 @@ void tell_warnings(FarmClient& client, uint64_t id) {
   std::string first;
   size_t count = 0;
   const Outcome failure = client.logs(request, [&](const v1::LogLine& line) {
-    if (line.level() != v1::LOG_LEVEL_WARNING || !line.of_frame() || !line.worker().empty()) return;
+    if (line.level() != v1::LOG_LEVEL_WARNING || !line.of_frame() || !line.worker().empty()) {
+      return true;
+    }
     if (++count == 1) {
       first = fmt::format("frame {} {}", line.frame(), core::printable(line.text()));
     }
+    return true;
   });
   if (failure || count == 0) return;  // the job is done all the same
   const std::string others =

@@ -30,5 +30,32 @@ TEST_F(HostileLists, OfAsManyAsAFarmMayHaveCome) {
   EXPECT_EQ(run(workers_command, at({"--names"})).status, kDone);
 }
 
+TEST_F(HostileLists, WhoseStepsHaveNoEndEndTheTrace) {
+  add_job("a");
+  farm_.endless_steps = true;
+  const std::string file = folder_.file("trace.json");
+  Ran ran = run(trace_command, at({"1", "-o", file}));
+  EXPECT_EQ(ran.status, kFailed);
+  EXPECT_TRUE(has(ran.err, "more steps than one keeps")) << ran.err;
+  EXPECT_LT(farm_.calls, 200);
+  const json trace = json::parse(read_file(file), nullptr, false);
+  ASSERT_TRUE(trace.is_object()) << "what has come is a whole document";
+  size_t workers = 0;
+  for (const json& one : trace.at("traceEvents")) {
+    if (one.at("name") != "process_name") continue;
+    ++workers;
+    EXPECT_LT(one.at("args").at("name").get<std::string>().size(), 250U);
+  }
+  EXPECT_LE(workers, 20'002U);
+
+  farm_.endless_steps = false;
+  farm_.same_steps = true;
+  farm_.calls = 0;
+  ran = run(trace_command, at({"1", "-o", folder_.file("again.json")}));
+  EXPECT_EQ(ran.status, kFailed);
+  EXPECT_TRUE(has(ran.err, "steps whose numbers do not grow")) << ran.err;
+  EXPECT_LT(farm_.calls, 20);
+}
+
 }  // namespace
 }  // namespace hyades::cli
