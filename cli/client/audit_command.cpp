@@ -1,3 +1,4 @@
+#include <cstddef>
 #include <cstdint>
 #include <cstdio>
 #include <string>
@@ -34,6 +35,14 @@ void print_entry(const v1::AuditEntry& entry) {
   std::printf("%s\n", core::printable(line).c_str());
 }
 
+/// Of lines that are not as they should be; the rest are counted.
+constexpr uint64_t kMostTold = 1000;
+
+std::string short_name(const std::string& name) {
+  constexpr size_t kLong = 100;
+  return core::printable(name.size() > kLong ? name.substr(0, kLong) + "..." : name);
+}
+
 /// Follows the chains of the logs, and looks for digests that were noted before.
 class Verification {
  public:
@@ -41,21 +50,32 @@ class Verification {
 
   void add(const v1::AuditEntry& entry) {
     const std::string wrong = chains_.add(entry);
-    const std::string& last = chains_.ends().at(entry.log()).last;
-    std::erase(noted_, last);
-    if (wrong.empty()) return;
-    ++broken_;
-    std::printf("%s: the entry of %s, %s, %s\n", core::printable(entry.log()).c_str(),
-                format_time(entry.time_ms()).c_str(), core::printable(entry.deed()).c_str(),
+    if (const auto end = chains_.ends().find(entry.log()); end != chains_.ends().end()) {
+      std::erase(noted_, end->second.last);
+    }
+    if (wrong.empty() || ++broken_ > kMostTold) return;
+    std::printf("%s: the entry of %s, %s, %s\n", short_name(entry.log()).c_str(),
+                format_time(entry.time_ms()).c_str(), short_name(entry.deed()).c_str(),
                 wrong.c_str());
   }
 
   /// Tells what there is; whether all is as it should be.
   bool report() const {
+    if (broken_ > kMostTold) {
+      std::printf("... and %s more\n", core::format_count(broken_ - kMostTold).c_str());
+    }
     for (const auto& [log, end] : chains_.ends()) {
-      std::printf("%s: %s, last %s%s\n", core::printable(log).c_str(),
-                  core::counted(end.entries, "line").c_str(), end.last.c_str(),
-                  end.first.empty() ? "" : ", the oldest are gone");
+      std::string line = log + ": " + core::counted(end.entries, "line");
+      if (end.entries > 0) line += ", last " + end.last;
+      if (!end.first.empty()) line += ", the oldest are gone";
+      // As a coordinator of before there were chains wrote them, or somebody who took them out.
+      if (end.bare > 0) {
+        line += fmt::format(
+            "; {} of them hold{} no digest: nothing tells whether they are as they "
+            "were written",
+            end.bare, end.bare == 1 ? "s" : "");
+      }
+      std::printf("%s\n", line.c_str());
     }
     for (const std::string& digest : noted_) {
       std::printf("no entry has the digest %s\n", core::printable(digest).c_str());

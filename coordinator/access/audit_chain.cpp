@@ -50,16 +50,21 @@ std::string audit_digest(const v1::AuditEntry& entry) {
 }
 
 std::string AuditChains::add(const v1::AuditEntry& entry) {
-  End& end = ends_[entry.log()];
+  // Whoever is asked for the logs may be hostile, and name others without end.
+  const auto found = ends_.find(entry.log());
+  if (found == ends_.end()) return "is of a log that there is not";
+  End& end = found->second;
   const bool first = end.entries++ == 0;
-  const bool chained = std::exchange(chained_[entry.log()], !entry.previous().empty());
+  const bool bare = entry.previous().empty();
+  if (bare) ++end.bare;
+  const bool chained = std::exchange(end.chained, !bare);
   const std::string before = std::exchange(end.last, audit_digest(entry));
   if (first) {
     end.first = entry.previous();
     return {};
   }
   // Entries of before there were chains hold nothing.
-  if (entry.previous().empty()) return chained ? "does not tell what came before it" : "";
+  if (bare) return chained ? "does not tell what came before it" : "";
   return entry.previous() == before ? "" : "does not follow on the one before it";
 }
 

@@ -27,19 +27,21 @@ class AuditChains {
   /// What is known of one log.
   struct End {
     uint64_t entries = 0;
-    std::string first;  ///< the digest that its first entry holds; empty: the log begins there
-    std::string last;   ///< of its last entry, to be noted
+    uint64_t bare = 0;     ///< of them, that hold no digest
+    bool chained = false;  ///< whether the last entry holds a digest
+    std::string first;     ///< the digest that its first entry holds; empty: the log begins there
+    std::string last;      ///< of its last entry, to be noted
   };
 
-  /// Empty where the entry follows on the one before it; else what is wrong, in words.
+  /// Empty where the entry is one of a log that there is, and follows on the one before it; else
+  /// what is wrong, in words.
   std::string add(const v1::AuditEntry& entry);
 
-  /// By AuditEntry::log.
+  /// By AuditEntry::log: all logs that there are, also those that no entry was of.
   const std::map<std::string, End>& ends() const { return ends_; }
 
  private:
-  std::map<std::string, End> ends_;
-  std::map<std::string, bool> chained_;  ///< whether the log's last entry held a digest
+  std::map<std::string, End> ends_{{"audit", {}}, {"refusals", {}}, {"uploads", {}}};
 };
 
 }  // namespace hyades::coordinator

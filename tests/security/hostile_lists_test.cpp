@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "cli/client/farm_client.h"
+#include "coordinator/access/audit_chain.h"
 #include "tests/cli/client/client_testing.h"
 
 namespace hyades::cli {
@@ -55,6 +56,36 @@ TEST_F(HostileLists, WhoseStepsHaveNoEndEndTheTrace) {
   EXPECT_EQ(ran.status, kFailed);
   EXPECT_TRUE(has(ran.err, "steps whose numbers do not grow")) << ran.err;
   EXPECT_LT(farm_.calls, 20);
+}
+
+TEST_F(HostileLists, OfUnknownLogsAreNotKept) {
+  for (int i = 0; i < 3000; ++i) {
+    v1::AuditEntry& entry = farm_.audited.emplace_back();
+    entry.set_deed("job.cancel");
+    entry.set_log(i == 0 ? "audit" : std::to_string(i) + std::string(1000, 'x'));
+  }
+  const Ran ran = run(audit_command, at({"--verify"}));
+  EXPECT_EQ(ran.status, kFailed);
+  EXPECT_TRUE(has(ran.out, "xxx...: the entry of")) << ran.out.substr(0, 300);
+  EXPECT_TRUE(has(ran.out, "is of a log that there is not"));
+  EXPECT_LT(ran.out.size(), 400'000U) << "of the first thousand it is told";
+  EXPECT_TRUE(has(ran.out, "... and 1,999 more")) << ran.out.substr(ran.out.size() - 500);
+
+  coordinator::AuditChains chains;
+  for (const v1::AuditEntry& entry : farm_.audited) (void)chains.add(entry);
+  EXPECT_EQ(chains.ends().size(), 3U);
+}
+
+TEST_F(HostileLists, OfLinesWithoutDigestsAreToldToBeSo) {
+  for (int i = 0; i < 2; ++i) {
+    v1::AuditEntry& entry = farm_.audited.emplace_back();
+    entry.set_deed("job.cancel");
+    entry.set_log("audit");
+  }
+  const Ran ran = run(audit_command, at({"--verify"}));
+  EXPECT_EQ(ran.status, kDone) << "a coordinator of before there were chains wrote such lines";
+  EXPECT_TRUE(has(ran.out, "; 2 of them hold no digest")) << ran.out;
+  EXPECT_TRUE(has(ran.out, "\nrefusals: 0 lines\nuploads: 0 lines\n")) << ran.out;
 }
 
 }  // namespace
