@@ -214,8 +214,13 @@ Outcome FarmClient::get(uint64_t job, v1::GetJobResponse& response) {
     if (auto failure = count_part(part, bytes)) return failure;
     response.mutable_job()->Swap(part.mutable_job());
     response.mutable_frames()->MergeFrom(part.frames());
-    if (part.frames_size() > 0) request.set_after(part.frames().rbegin()->frame());
-  } while (part.more() && part.frames_size() > 0);
+    if (part.frames_size() == 0) break;
+    const int32_t last = part.frames().rbegin()->frame();
+    if (request.has_after() && last <= request.after()) {
+      return Failure{kFailed, "the coordinator lists frames whose numbers do not grow"};
+    }
+    request.set_after(last);
+  } while (part.more());
   return std::nullopt;
 }
 

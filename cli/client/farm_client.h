@@ -95,6 +95,9 @@ class FarmClient {
   /// All workers, by name.
   Outcome workers(v1::WorkersResponse& response);
 
+  /// How long one goes on trying where nothing gets on [s].
+  double patience() const { return options_.later_patience; }
+
  private:
   FarmClient(const ClientOptions& options, std::string token,
              std::shared_ptr<grpc::Channel> channel);

@@ -58,6 +58,9 @@ Outcome list_all_jobs(FarmClient& client, bool ended, const std::string& owner,
     if (auto failure = client.call("Jobs/List", request, response)) return failure;
     if (auto failure = client.count_part(response, bytes)) return failure;
     jobs.insert(jobs.end(), response.jobs().begin(), response.jobs().end());
+    if (request.before() != 0 && response.next_before() >= request.before()) {
+      return Failure{kFailed, "the coordinator lists jobs whose numbers do not fall"};
+    }
     request.set_before(response.next_before());
   } while (response.next_before() != 0 && response.jobs_size() > 0);
   return std::nullopt;

@@ -1,12 +1,14 @@
 #include "cli/client/upload.h"
 
 #include <algorithm>
+#include <chrono>
 #include <cstdint>
 #include <cstdio>
 #include <map>
 #include <optional>
 #include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -44,14 +46,16 @@ Outcome ask(FarmClient& client, const std::vector<AssetRecord>& files,
       by_digest[asked.sha256()] = &files[i];
     }
     v1::FindMissingResponse response;
-    if (auto failure = client.call("Assets/FindMissing", request, response))
-      return failure;
+    if (auto failure = client.call("Assets/FindMissing", request, response)) return failure;
     for (const auto& one : response.missing()) {
-      const auto found = by_digest.find(one.sha256());
-      if (found == by_digest.end()) {
-        return Failure{kFailed, "the coordinator asks for a file that the job does not have"};
+      const auto found = by_digest.extract(one.sha256());
+      if (!found) {
+        return Failure{kFailed,
+                       "the coordinator asks for a file that the job does not have, or twice for "
+                       "one"};
       }
-      missing.push_back({*found->second, std::min(one.offset(), found->second->size)});
+      const AssetRecord& file = *found.mapped();
+      missing.push_back({file, std::min(one.offset(), file.size)});
     }
   }
   return std::nullopt;
@@ -60,12 +64,16 @@ Outcome ask(FarmClient& client, const std::vector<AssetRecord>& files,
 Outcome upload_file(FarmClient& client, Missing one, core::JobFiles& from,
                     TransferDisplay& display) {
   int restarts = 0;
+  // A coordinator that answers all but this has the client's patience begin anew each time.
+  uint64_t furthest = one.offset;
+  bool stuck = false;
+  auto stuck_since = std::chrono::steady_clock::now();
   while (true) {
     const auto input = from.stream(one.file.reference);
     const Outcome failure =
         client.upload(one.file, *input, one.offset, [&](uint64_t bytes) { display.moved(bytes); });
     if (!failure) return std::nullopt;
-    if (failure->from_start) {
+    if (failure->from_start && one.offset > 0) {
       one.offset = 0;
       continue;
     }
@@ -75,6 +83,15 @@ Outcome upload_file(FarmClient& client, Missing one, core::JobFiles& from,
     if (auto broken = ask(client, {one.file}, still)) return broken;
     if (still.empty()) return std::nullopt;
     one = still.front();
+    const auto now = std::chrono::steady_clock::now();
+    if (one.offset > furthest) {
+      furthest = one.offset;
+      stuck = false;
+    } else if (!std::exchange(stuck, true)) {
+      stuck_since = now;
+    } else if (std::chrono::duration<double>(now - stuck_since).count() > client.patience()) {
+      return failure;
+    }
   }
 }
 

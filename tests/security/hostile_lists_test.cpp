@@ -11,6 +11,7 @@ namespace {
 
 using HostileLists = Client;
 
+// Two bytes of an empty worker took five hundred here.
 TEST_F(HostileLists, OfEmptyRowsAreNotParsed) {
   add_job("a");
   farm_.workers.resize(250'000);
@@ -56,6 +57,36 @@ TEST_F(HostileLists, WhoseStepsHaveNoEndEndTheTrace) {
   EXPECT_EQ(ran.status, kFailed);
   EXPECT_TRUE(has(ran.err, "steps whose numbers do not grow")) << ran.err;
   EXPECT_LT(farm_.calls, 20);
+}
+
+TEST_F(HostileLists, WhoseNumbersDoNotGrowEnd) {
+  add_job("a");
+  v1::Frame& frame = farm_.frames.emplace_back();
+  frame.set_frame(3);
+  farm_.turns = true;
+  const Ran status = run(status_command, at({"1"}));
+  EXPECT_EQ(status.status, kFailed);
+  EXPECT_TRUE(has(status.err, "frames whose numbers do not grow")) << status.err;
+  const Ran jobs = run(jobs_command, at({"--json"}));
+  EXPECT_EQ(jobs.status, kFailed);
+  EXPECT_TRUE(has(jobs.err, "jobs whose numbers do not fall")) << jobs.err;
+  EXPECT_LT(farm_.calls, 10);
+}
+
+TEST_F(HostileLists, OfTheSameFileTwiceAreRefused) {
+  farm_.asks_twice = true;
+  const Ran ran = submit();
+  EXPECT_EQ(ran.status, kFailed);
+  EXPECT_TRUE(has(ran.err, "or twice for one")) << ran.err;
+  EXPECT_EQ(farm_.uploaded, 0U);
+}
+
+TEST_F(HostileLists, OfMissingFilesDoNotFeedPatience) {
+  farm_.no_uploads = true;
+  const auto begun = std::chrono::steady_clock::now();
+  const Ran ran = submit({"--patience", "1"});
+  EXPECT_EQ(ran.status, kNoAnswer) << ran.err;
+  EXPECT_LT(std::chrono::steady_clock::now() - begun, std::chrono::seconds(10));
 }
 
 TEST_F(HostileLists, OfUnknownLogsAreNotKept) {
