@@ -25,6 +25,7 @@
 #include "core/base/posix_file.h"
 #include "core/base/printable.h"
 #include "core/base/text.h"
+#include "core/job/output_names.h"
 #include "core/job/output_path.h"
 #include "farm/wire.h"
 
@@ -119,6 +120,10 @@ bool is_safe_output(const std::string& path) {
   if (core::output_name(path) == core::OutputName::outside || core::printable(path) != path) {
     return false;
   }
+  // Some systems take a backslash for what a slash is here.
+  std::string slashed = path;
+  std::replace(slashed.begin(), slashed.end(), '\\', '/');
+  if (core::output_name(slashed) == core::OutputName::outside) return false;
   const fs::path normal = fs::path(path).lexically_normal();
   return normal.string() == path && normal.has_filename() && normal != ".";
 }
@@ -136,6 +141,12 @@ Outcome FetchTarget::check_name(const std::string& path) const {
     return Failure{kFailed, path +
                                 ": hidden files, and names that begin with '-', are not written "
                                 "(--hidden writes them)"};
+  }
+  // What builds, scripts and shells take for theirs (a Makefile, say) is no picture either.
+  const auto endings = core::output_endings();
+  if (std::find(endings.begin(), endings.end(), core::file_extension(path)) == endings.end()) {
+    return Failure{kFailed, path + ": no job has such an output; expected the ending " +
+                                core::join_names(endings)};
   }
   // The folder may have come with somebody's scene. A link that has the file's own name is
   // replaced, not followed.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -130,10 +131,8 @@ void read_output(MapReader& reader, Job& job) {
   const auto row = std::find_if(kFormats.begin(), kFormats.end(),
                                 [&](const FormatRow& r) { return extension == r.extension; });
   if (row == kFormats.end()) {
-    std::vector<std::string> endings;
-    for (const FormatRow& r : kFormats) endings.emplace_back(r.extension);
     reader.complain(where, fmt::format("file is '{}', expected the ending {}", output.file,
-                                       join_names(endings)));
+                                       join_names(output_endings())));
     return;
   }
   check_frame_marks(reader, where, output.file, job.frames, row->video);
@@ -171,6 +170,15 @@ void add_default_outputs(Job& job, float exposure) {
 }
 
 }  // namespace
+
+std::span<const std::string> output_endings() {
+  static const std::vector<std::string> kEndings = [] {
+    std::vector<std::string> endings;
+    for (const FormatRow& row : kFormats) endings.emplace_back(row.extension);
+    return endings;
+  }();
+  return kEndings;
+}
 
 void read_outputs(MapReader& top, Job& job) {
   const YamlNode* node = top.find("outputs");

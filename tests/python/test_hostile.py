@@ -4,6 +4,7 @@ import hashlib
 import json
 import os
 import pathlib
+import re
 import tempfile
 import unittest
 from unittest import mock
@@ -16,7 +17,7 @@ from fake_farm import FakeFarm, Request
 import hyades
 from hyades.exr import decode_exr
 from hyades.exr_header import Header
-from hyades.farm import upload
+from hyades.farm import names, upload
 from hyades.farm.events import parse_events
 from hyades.farm.states import JobState, read_state
 
@@ -76,16 +77,24 @@ class Fetch(unittest.TestCase):
         return sorted(str(p.relative_to(self.scratch)) for p in self.scratch.rglob("*") if not p.is_dir())
 
     def test_names_that_leave_the_folder_or_hide_are_refused(self) -> None:
-        names = [
+        wrong = [
             "../up.exr", "/tmp/hyades-absolute", "a/../../up", "..", ".", "", "a/", "a//b", "./a", "a/./b", "a/..",
             ".bashrc", "a/.git/hooks/post-checkout", "-rf", "a/-x", ".hyades/fetched", "a/.hyades/x",
+            "json.py", "Makefile", "a/x.exr.sh", "a.EXR.", "a\\..\\b.exr", "\\\\host\\b.exr",
             "a\nb", "a\x1b[2J", "a\u202egpj.exr", "a\u200b", "a\udc80",
         ]  # fmt: skip
-        for name in names:
+        for name in wrong:
             with self.subTest(name), self.assertRaises(hyades.FileRefused):
                 self.fetch(Serves(output(name)))
             self.assertEqual(self.everything(), [])
             self.assertEqual(len(self.requests), 1, "no byte of it may be asked for")
+
+    def test_what_jobs_write_is_what_may_come(self) -> None:
+        rows = pathlib.Path(__file__).parents[2] / "core/job/read_outputs.cpp"
+        formats = re.search(r"kFormats = (.*?)}};", rows.read_text(), re.DOTALL).group(1)
+        self.assertEqual(list(names.ENDINGS), re.findall(r'{"(\.\w+)"', formats))
+        for ending in (*names.ENDINGS, ".film.exr", ".PNG"):
+            names.check_name("a/b.0001" + ending)
 
     def test_what_is_kept_for_hyades_is_refused_even_to_who_asks_for_hidden_files(self) -> None:
         with self.assertRaises(hyades.FileRefused):

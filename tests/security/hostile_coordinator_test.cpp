@@ -19,7 +19,7 @@ TEST_F(HostileCoordinator, WritesNoHiddenFiles) {
   add_job("a", v1::JOB_STATE_DONE);
   const std::string out = folder_.file("out");
   for (const char* path :
-       {".bashrc", ".ssh/authorized_keys", ".git/hooks/post-checkout", "-rf", "a/.b/c"}) {
+       {".bashrc", ".ssh/authorized_keys", ".git/hooks/post-checkout", "-rf", "a/.b/c.exr"}) {
     farm_.outputs = {{path, "evil"}};
     const Ran ran = run(fetch_command, at({"a", "--output", out}));
     EXPECT_EQ(ran.status, kFailed) << path;
@@ -27,7 +27,23 @@ TEST_F(HostileCoordinator, WritesNoHiddenFiles) {
     EXPECT_FALSE(fs::exists(out + "/" + path));
   }
   EXPECT_EQ(run(fetch_command, at({"a", "--output", out, "--hidden"})).status, kDone);
-  EXPECT_TRUE(fs::exists(out + "/a/.b/c"));
+  EXPECT_TRUE(fs::exists(out + "/a/.b/c.exr"));
+}
+
+TEST_F(HostileCoordinator, WritesNothingButWhatJobsHave) {
+  add_job("a", v1::JOB_STATE_DONE);
+  const std::string out = folder_.file("out");
+  for (const char* path : {"json.py", "a/Makefile", "a.exr.sh", "a.EXR~", "exr"}) {
+    farm_.outputs = {{path, "evil"}};
+    const Ran ran = run(fetch_command, at({"a", "--output", out, "--hidden"}));
+    EXPECT_EQ(ran.status, kFailed) << path;
+    EXPECT_TRUE(has(ran.err, std::string(path) + ": no job has such an output; expected the "
+                                                 "ending .exr"))
+        << ran.err;
+    EXPECT_FALSE(fs::exists(out + "/" + path));
+  }
+  farm_.outputs = {{"a.EXR", "1"}, {"b/a.film.exr", "2"}, {"c.webm", "3"}};
+  EXPECT_EQ(run(fetch_command, at({"a", "--output", out})).status, kDone);
 }
 
 TEST_F(HostileCoordinator, ReachesNoTerminalByWordsOfRefusal) {
@@ -143,12 +159,12 @@ TEST_F(HostileCoordinator, ReplacesNoFileThatFetchHasNotWritten) {
   add_job("a", v1::JOB_STATE_DONE);
   const std::string out = folder_.file("out");
   fs::create_directories(out);
-  std::ofstream(out + "/thesis.tex") << "mine";
-  farm_.outputs = {{"thesis.tex", "evil"}};
+  std::ofstream(out + "/thesis.tif") << "mine";
+  farm_.outputs = {{"thesis.tif", "evil"}};
   const Ran ran = run(fetch_command, at({"a", "--output", out}));
   EXPECT_EQ(ran.status, kFailed);
-  EXPECT_TRUE(has(ran.err, "thesis.tex (--overwrite replaces it")) << ran.err;
-  EXPECT_EQ(read_file(out + "/thesis.tex"), "mine");
+  EXPECT_TRUE(has(ran.err, "thesis.tif (--overwrite replaces it")) << ran.err;
+  EXPECT_EQ(read_file(out + "/thesis.tif"), "mine");
 
   // What was fetched is replaced by a later rendering, also by a later run.
   farm_.outputs = {{"a.exr", "first"}};
