@@ -226,8 +226,8 @@ core::Status print_summary(const CheckOptions& options, const core::Job& job,
   std::optional<double> seconds;
   bool dark = false;
   if (!options.no_probe) {
-    const SampleCost cost =
-        measure_sample_cost(renderer, window, job.frames.first, 1, kProbeSeconds);
+    const SampleCost cost = measure_sample_cost(renderer, window, job.frames.first, 1,
+                                                kProbeSeconds, 4 * kProbeSeconds);
     seconds = cost.core_seconds;
     dark = !cost.lit;
   }

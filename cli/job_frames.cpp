@@ -160,7 +160,7 @@ core::Result<double> JobFrames::seconds_per_sample(int32_t frame, int threads, d
                    : core::build_scene(loaded_.job, frame, cache_);
   if (!scene) return scene.error();
   const core::FrameRenderer renderer(*scene, loaded_.job, frame, layers_);
-  return measure_sample_cost(renderer, options_.window, frame, threads, seconds).seconds;
+  return measure_sample_cost(renderer, options_.window, frame, threads, seconds, seconds).seconds;
 }
 
 core::Result<std::shared_ptr<const coordinator::FrameWork>> JobFrames::prepare(int32_t frame) {

@@ -12,10 +12,9 @@
 namespace hyades::cli {
 
 SampleCost measure_sample_cost(const core::FrameRenderer& renderer, const core::PixelRect& window,
-                               int32_t frame, int threads, double seconds) {
+                               int32_t frame, int threads, double seconds, double most) {
   using Clock = std::chrono::steady_clock;
   constexpr int kPatch = 4;
-  constexpr double kMostWall = 4;
   const auto begin = Clock::now();
   const auto so_far = [begin] {
     return std::chrono::duration<double>(Clock::now() - begin).count();
@@ -35,7 +34,7 @@ SampleCost measure_sample_cost(const core::FrameRenderer& renderer, const core::
       samples += unit.counters.samples;
       if (!core::is_black(unit.film)) lit = true;
       // By its own processor time: where others use the machine too few patches would be tried.
-    } while (core::thread_seconds() - cpu_begin < seconds && so_far() < kMostWall * seconds);
+    } while (core::thread_seconds() - cpu_begin < seconds && so_far() < most);
     core_seconds += core::thread_seconds() - cpu_begin;
   };
   std::vector<std::thread> others;

@@ -14,9 +14,9 @@ struct SampleCost {
   bool lit = false;         ///< whether light has reached one of the pixels
 };
 
-/// Measures it for at least `seconds` with `threads` threads, on small patches that are scattered
-/// over `window`.
+/// Measures it on small patches that are scattered over `window`, with `threads` threads, until
+/// each has used `seconds` of its processor's time, or for `most` seconds by the clock.
 SampleCost measure_sample_cost(const core::FrameRenderer& renderer, const core::PixelRect& window,
-                               int32_t frame, int threads, double seconds);
+                               int32_t frame, int threads, double seconds, double most);
 
 }  // namespace hyades::cli

@@ -47,8 +47,8 @@ class Film(Described):
     SECTIONS: ClassVar[tuple[str, ...]] = ("film",)
     size: Sequence[int] = key("2 whole numbers", (640, 360), low=1, high=65536)
     """Size of the full frame. A film takes 128 to 320 bytes of memory per pixel; `hyades render`
-    and the farm refuse one that takes more than half of what is there (`--film-memory`). Unit:
-    pixels. Range: 1 to 65536 each, 2^28 pixels in all."""
+    refuses one that takes more than half of what is there, a farm more than a third (`--film-
+    memory`). Unit: pixels. Range: 1 to 65536 each, 2^28 pixels in all."""
     crop: Sequence[int] | None = key("4 whole numbers", low=0, high=65536)
     """Renders only x0 <= x < x1, y0 <= y < y1; row 0 is the top. Pixels have the same bits as in
     the whole frame (but for `bdpt` and `mlt`). EXR outputs keep the place: their display window is
