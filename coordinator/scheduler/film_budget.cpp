@@ -10,8 +10,9 @@ namespace {
 /// Of whoever has half of the room [seconds].
 constexpr double kTurn = 60;
 constexpr double kSetAsidePerSecond = 50e6;  ///< bytes, of a slow disk
-/// Who waits for room asks again within so long, also where workers stay with what they have.
-constexpr Duration kStillWaits = std::chrono::seconds(30);
+/// Who waits for room is come to again within so long, also where there is one worker, which stays
+/// with what it has, and others are before him in line.
+constexpr Duration kStillWaits = std::chrono::seconds(120);
 
 }  // namespace
 
@@ -22,7 +23,7 @@ void FilmBudget::take(const ScheduledJob& job, FrameSlot& slot) {
   bytes_ += job.plan.film_bytes;
   bytes_of_[job.plan.owner] += job.plan.film_bytes;
   find_most();
-  forget(job);
+  forget(job.id);
   holders_.emplace(job.id, job.index_of(slot));
 }
 
@@ -38,8 +39,8 @@ void FilmBudget::drop(const ScheduledJob& job, FrameSlot& slot) {
   serve_refused();
 }
 
-void FilmBudget::forget(const ScheduledJob& job) {
-  if (!next_ || next_->job != job.id) return;
+void FilmBudget::forget(JobId job) {
+  if (!next_ || next_->job != job) return;
   next_.reset();
   yielded_.reset();
 }

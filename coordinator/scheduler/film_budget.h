@@ -55,8 +55,10 @@ class FilmBudget {
   /// A film of the job has room, but somebody has to take a unit first: it is next as long as that
   /// is asked for.
   void expect(const ScheduledJob& job);
+  /// The job that is next, if there is one.
+  std::optional<JobId> next() const { return next_ ? std::optional(next_->job) : std::nullopt; }
   /// The job waits no longer.
-  void forget(const ScheduledJob& job);
+  void forget(JobId job);
   /// Some frame of the job gets no units, as its film does not fit.
   void refuse(const ScheduledJob& job);
   /// Whether that has happened since serve_refused().

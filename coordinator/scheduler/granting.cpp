@@ -401,6 +401,10 @@ bool Granting::film_fits(const ScheduledJob& job, const FrameSlot& slot) const {
 /// so, as their jobs have no workers; or that whoever has most of the room lets go in turn.
 void Granting::make_room() {
   if (!next_room_ || step_.now < *next_room_) return;
+  if (const auto next = films_.next()) {
+    const ScheduledJob* job = jobs_.find(*next);
+    if (job == nullptr || !job->ready) films_.forget(*next);
+  }
   bool paused = false;  // films of paused jobs are there
   bool soon = false;    // some can be set aside later
   uint64_t leaving = 0;

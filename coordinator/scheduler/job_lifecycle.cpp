@@ -63,7 +63,7 @@ void JobLifecycle::restore(ScheduledJob& job, const RestoredJob& restored) {
 void JobLifecycle::on(const JobPaused& e) {
   if (ScheduledJob* job = jobs_.find(e.job)) {
     job->paused = true;
-    films_.forget(*job);
+    films_.forget(job->id);
     jobs_.update_offer(*job);
   }
 }
@@ -81,7 +81,7 @@ void JobLifecycle::on(const JobCancelled& e) {
   if (job == nullptr) return;
   for (const uint32_t i : job->in_flight) leases_.take_back(*job, job->slots[i]);
   for (FrameSlot& slot : job->slots) films_.drop(*job, slot);
-  films_.forget(*job);
+  films_.forget(job->id);
   job->in_flight.clear();
   jobs_.end(*job, true);
 }

@@ -454,6 +454,7 @@ class CrowdedFilms : public FilmRoom {
       }
     }
   }
+
   std::vector<Lease> leases_;
   std::vector<WorkerId> idle_ = {kAnna, kBert, kChoosy};
   std::map<JobId, int> units_;
