@@ -406,13 +406,14 @@ void Granting::make_room() {
     if (job == nullptr || !job->ready) films_.forget(*next);
   }
   bool paused = false;  // films of paused jobs are there
-  bool soon = false;    // some can be set aside later
+  bool soon = false;    // some can be set aside later, or somebody works at them
   uint64_t leaving = 0;
   std::vector<FramePlace> idle;
   for (const auto& [id, index] : films_.holders()) {
     const FramePlace place{jobs_.find(id), index};
     FrameSlot& slot = place.frame();
     paused = paused || place.job->paused;
+    soon = soon || (slot.ledger && !slot.ledger->idle());
     if (!slot.leaving && slot.stays_until <= step_.now && FrameLifecycle::may_leave(slot)) {
       if (place.job->paused) {
         frames_.set_aside(*place.job, slot);

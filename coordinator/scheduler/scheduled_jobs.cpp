@@ -6,7 +6,7 @@ namespace hyades::coordinator {
 namespace {
 
 ScheduledJobs::ShareOrder order_of(const FairShare& share) {
-  return {-share.priority, share.running, share.serial};
+  return {-share.priority, share.running, share.served, share.serial};
 }
 
 }  // namespace
@@ -98,6 +98,7 @@ void ScheduledJobs::count_running(ScheduledJob& job, int64_t change) {
   FairShare& share = *job.share;
   ready_shares_.erase(order_of(share));
   share.running += static_cast<uint64_t>(change);
+  if (change > 0) share.served = ++last_served_;
   if (!share.ready.empty()) ready_shares_.emplace(order_of(share), &share);
 }
 

@@ -21,6 +21,7 @@ struct FairShare {
   uint64_t serial = 0;   ///< of the job that came first
   uint64_t jobs = 0;     ///< how many
   uint64_t running = 0;  ///< leased units
+  uint64_t served = 0;   ///< when it got its last lease, in order; 0: it had none
   /// Jobs that have work for some worker.
   struct Ready {
     const NeedsGroup* group = nullptr;
@@ -41,8 +42,9 @@ class ScheduledJobs {
  public:
   /// By priority and owner.
   using Shares = std::map<std::pair<int, std::string>, FairShare>;
-  /// Highest priority first, then who has least, then by age.
-  using ShareOrder = std::tuple<int, uint64_t, uint64_t>;
+  /// Highest priority first, then who has least, then whose last lease is longest ago, then
+  /// by age.
+  using ShareOrder = std::tuple<int, uint64_t, uint64_t, uint64_t>;
 
   ScheduledJobs(Step& step, PendingRecords& records) : step_(step), records_(records) {}
 
@@ -83,6 +85,7 @@ class ScheduledJobs {
   PendingRecords& records_;
   std::map<JobId, std::unique_ptr<ScheduledJob>> jobs_;
   uint64_t next_serial_ = 1;
+  uint64_t last_served_ = 0;
   Shares shares_;
   std::map<Needs, NeedsGroup> needs_;  ///< of all jobs
   uint64_t next_group_ = 1;

@@ -437,7 +437,6 @@ class CrowdedFilms : public FilmRoom {
     return units_;
   }
 
- private:
   void tell(const Event& event) {
     for (const Action& said : b.tell(event)) {
       if (const auto* lease = std::get_if<Lease>(&said)) {
@@ -455,6 +454,7 @@ class CrowdedFilms : public FilmRoom {
     }
   }
 
+ private:
   std::vector<Lease> leases_;
   std::vector<WorkerId> idle_ = {kAnna, kBert, kChoosy};
   std::map<JobId, int> units_;
@@ -499,6 +499,22 @@ TEST_F(CrowdedFilms, SmallFramesPutNobodysTurnOff) {
   const auto units = work(120);
   EXPECT_GT(units.at(kThird), 3);
   EXPECT_TRUE(units.contains(kOther)) << "others' small frames begin and end all the time";
+}
+
+// With one worker all owners have nothing out whenever it asks.
+TEST_F(CrowdedFilms, OneWorkerGivesEverybodyHisTurn) {
+  tell(WorkerLost{kBert});
+  tell(WorkerLost{kChoosy});
+  add(kJob, of("eve", 60, 1000));
+  work(1);
+  JobPlan small = of("cat", 1, 1);
+  small.frames.resize(1000);
+  std::iota(small.frames.begin(), small.frames.end(), 1);
+  add(kThird, small);
+  add(kOther, of("vic", 49, 1000));
+  const auto units = work(120);
+  EXPECT_TRUE(units.contains(kThird));
+  EXPECT_TRUE(units.contains(kOther));
 }
 
 TEST_F(FilmRoom, FilmsFromBeforeARestartTakeRoom) {
