@@ -19,6 +19,23 @@ namespace {
 
 using namespace std::chrono_literals;
 
+std::string token_of(WebWorld& world, const std::string& name, v1::Role role) {
+  std::string token;
+  StoredToken row;
+  EXPECT_TRUE(world.farm.authority->create(name, role, 0, token, row).ok());
+  return token;
+}
+
+/// A listener for health alone beside that of the world.
+auto serve_health(WebWorld& world) {
+  farm::Listen listen = world.farm.how;
+  listen.address = "127.0.0.1:0";
+  auto health =
+      WebServer::start(listen, *world.farm.controller, *world.farm.authority, {}, Serves::health);
+  EXPECT_TRUE(health);
+  return health;
+}
+
 TEST(Crowds, AFewAddressesDoNotTakeAllConnections) {
   for (const int attackers : {1, 4, 20, 100}) {
     ConnectionCount count(4000, 1000, 8);
@@ -98,19 +115,13 @@ TEST(Crowds, RequestsThatAreNotEndedAreEnded) {
 TEST(Crowds, BodiesThatNeverComeLeaveRoomForOthers) {
   WebWorld world;
   world.start();
-  const auto token_of = [&](const std::string& name, v1::Role role) {
-    std::string text;
-    StoredToken row;
-    EXPECT_TRUE(world.farm.authority->create(name, role, 0, text, row).ok());
-    return text;
-  };
   const auto announce = [](const std::string& token) {
     return "POST /api/v1/jobs HTTP/1.1\r\nHost: localhost\r\nAuthorization: Bearer " + token +
            "\r\nContent-Type: application/json\r\nContent-Length: 16777216\r\n\r\n";
   };
-  const std::string root = token_of("root", v1::ROLE_ADMIN);
-  const std::string ada = token_of("ada", v1::ROLE_SUBMITTER);
-  const std::string bob = token_of("bob", v1::ROLE_SUBMITTER);
+  const std::string root = token_of(world, "root", v1::ROLE_ADMIN);
+  const std::string ada = token_of(world, "ada", v1::ROLE_SUBMITTER);
+  const std::string bob = token_of(world, "bob", v1::ROLE_SUBMITTER);
   const auto large = [&](const std::string& token) {
     const std::string text(size_t{1} << 20U, 'a');
     return world.client
@@ -135,8 +146,8 @@ TEST(Crowds, BodiesThatNeverComeLeaveRoomForOthers) {
   expect_small_ones_come_in();
   std::vector<std::unique_ptr<SlowRequests>> of_more;
   for (const char* name : {"carl", "dora", "eve"}) {
-    of_more.push_back(std::make_unique<SlowRequests>(world.web->url(), 16,
-                                                     announce(token_of(name, v1::ROLE_SUBMITTER))));
+    of_more.push_back(std::make_unique<SlowRequests>(
+        world.web->url(), 16, announce(token_of(world, name, v1::ROLE_SUBMITTER))));
   }
   EXPECT_TRUE(eventually([&] { return large(bob) == 503; })) << "four of them have all";
   expect_small_ones_come_in();
@@ -152,14 +163,8 @@ TEST(UnreadAnswers, LeaveRoomForThoseOfOthers) {
   v1::SubmitResponse job;
   ASSERT_TRUE(
       world.farm.jobs->Submit(world.farm.context().get(), FarmWorld::request(text), &job).ok());
-  const auto token_of = [&](const std::string& name) {
-    std::string token;
-    StoredToken row;
-    EXPECT_TRUE(world.farm.authority->create(name, v1::ROLE_ADMIN, 0, token, row).ok());
-    return token;
-  };
-  const std::string ada = token_of("ada");
-  const std::string bob = token_of("bob");
+  const std::string ada = token_of(world, "ada", v1::ROLE_ADMIN);
+  const std::string bob = token_of(world, "bob", v1::ROLE_ADMIN);
   const std::string path = "/api/v1/jobs/" + std::to_string(job.job().id()) + "/document";
   const auto status_for = [&](const std::string& token) {
     return world.client->get(path, {{"Authorization", "Bearer " + token}}).status;
@@ -178,10 +183,7 @@ TEST(UnreadAnswers, LeaveRoomForThoseOfOthers) {
 TEST(Crowds, HealthHasAPlaceThatTheyDoNotReach) {
   WebWorld world;
   world.start();
-  farm::Listen listen = world.farm.how;
-  listen.address = "127.0.0.1:0";
-  auto health =
-      WebServer::start(listen, *world.farm.controller, *world.farm.authority, {}, Serves::health);
+  const auto health = serve_health(world);
   ASSERT_TRUE(health);
   // This machine's own may take all connections: nobody else comes in until they end.
   const SlowRequests crowd(world.web->url(), 4100, "GET /");
@@ -196,13 +198,8 @@ TEST(Crowds, HealthHasAPlaceThatTheyDoNotReach) {
 TEST(Crowds, WhoAsksForMuchAtOnceKeepsNobodyWaiting) {
   WebWorld world;
   world.start();
-  std::string secret;
-  StoredToken row;
-  ASSERT_TRUE(world.farm.authority->create("root", v1::ROLE_ADMIN, 0, secret, row).ok());
-  farm::Listen listen = world.farm.how;
-  listen.address = "127.0.0.1:0";
-  auto health =
-      WebServer::start(listen, *world.farm.controller, *world.farm.authority, {}, Serves::health);
+  (void)token_of(world, "root", v1::ROLE_ADMIN);  // from now on those without one are strangers
+  const auto health = serve_health(world);
   ASSERT_TRUE(health);
   std::string many;
   for (int i = 0; i < 400; ++i) many += "GET /healthz HTTP/1.1\r\nHost: localhost\r\n\r\n";
@@ -217,13 +214,8 @@ TEST(Crowds, WhoAsksForMuchAtOnceKeepsNobodyWaiting) {
 TEST(Crowds, StrangersAskForLittleAtOnce) {
   WebWorld world;
   world.start();
-  std::string secret;
-  StoredToken row;
-  ASSERT_TRUE(world.farm.authority->create("root", v1::ROLE_ADMIN, 0, secret, row).ok());
-  farm::Listen listen = world.farm.how;
-  listen.address = "127.0.0.1:0";
-  auto health =
-      WebServer::start(listen, *world.farm.controller, *world.farm.authority, {}, Serves::health);
+  const std::string secret = token_of(world, "root", v1::ROLE_ADMIN);
+  const auto health = serve_health(world);
   ASSERT_TRUE(health);
   const auto answers = [](const std::string& url, const std::string& headers) {
     std::string asked;

@@ -454,6 +454,18 @@ class CrowdedFilms : public FilmRoom {
     }
   }
 
+  /// A film waits beside a larger one, while another owner's small frames begin and end.
+  std::map<JobId, int> work_beside_small_frames() {
+    add(kJob, of("eve", 60, 1000));
+    work(1);
+    JobPlan small = of("cat", 1, 1);
+    small.frames.resize(1000);
+    std::iota(small.frames.begin(), small.frames.end(), 1);
+    add(kThird, small);
+    add(kOther, of("vic", 49, 1000));
+    return work(120);
+  }
+
  private:
   std::vector<Lease> leases_;
   std::vector<WorkerId> idle_ = {kAnna, kBert, kChoosy};
@@ -489,14 +501,7 @@ TEST_F(CrowdedFilms, WhoWaitsForHisOwnFilmsHoldsUpNobodyElse) {
 }
 
 TEST_F(CrowdedFilms, SmallFramesPutNobodysTurnOff) {
-  add(kJob, of("eve", 60, 1000));
-  work(1);
-  JobPlan small = of("cat", 1, 1);
-  small.frames.resize(1000);
-  std::iota(small.frames.begin(), small.frames.end(), 1);
-  add(kThird, small);
-  add(kOther, of("vic", 49, 1000));
-  const auto units = work(120);
+  const auto units = work_beside_small_frames();
   EXPECT_GT(units.at(kThird), 3);
   EXPECT_TRUE(units.contains(kOther)) << "others' small frames begin and end all the time";
 }
@@ -505,14 +510,7 @@ TEST_F(CrowdedFilms, SmallFramesPutNobodysTurnOff) {
 TEST_F(CrowdedFilms, OneWorkerGivesEverybodyHisTurn) {
   tell(WorkerLost{kBert});
   tell(WorkerLost{kChoosy});
-  add(kJob, of("eve", 60, 1000));
-  work(1);
-  JobPlan small = of("cat", 1, 1);
-  small.frames.resize(1000);
-  std::iota(small.frames.begin(), small.frames.end(), 1);
-  add(kThird, small);
-  add(kOther, of("vic", 49, 1000));
-  const auto units = work(120);
+  const auto units = work_beside_small_frames();
   EXPECT_TRUE(units.contains(kThird));
   EXPECT_TRUE(units.contains(kOther));
 }
