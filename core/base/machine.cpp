@@ -7,7 +7,8 @@
 #include <climits>
 #include <csignal>
 #include <ctime>
-#include <fstream>
+
+#include "core/base/cgroup.h"
 
 namespace hyades::core {
 
@@ -16,13 +17,7 @@ uint64_t usable_memory() {
   const long pages = ::sysconf(_SC_PHYS_PAGES);
   const long size = ::sysconf(_SC_PAGESIZE);
   if (pages > 0 && size > 0) least = static_cast<uint64_t>(pages) * static_cast<uint64_t>(size);
-  // Of the container, where it sees itself as the root: of version 2, and of version 1, which says
-  // "no limit" by a huge number.
-  for (const char* file :
-       {"/sys/fs/cgroup/memory.max", "/sys/fs/cgroup/memory/memory.limit_in_bytes"}) {
-    uint64_t limit = 0;
-    if (std::ifstream(file) >> limit) least = std::min(least, limit);
-  }
+  least = std::min(least, cgroup_memory_limit());
   rlimit own{};
   if (::getrlimit(RLIMIT_AS, &own) == 0 && own.rlim_cur != RLIM_INFINITY) {
     least = std::min<uint64_t>(least, own.rlim_cur);

@@ -6,8 +6,8 @@
 
 namespace hyades::core {
 
-/// Bytes of memory that this process may take: the least of what the machine has, the limit of its
-/// container (cgroup) and its own (ulimit -v). 0 where that is not known.
+/// Bytes of memory that this process may take: the least of what the machine has, the limits of its
+/// control groups (cgroup_memory_limit()) and its own (ulimit -v). 0 where that is not known.
 uint64_t usable_memory();
 
 /// Half of that; all there can be where it is not known.
