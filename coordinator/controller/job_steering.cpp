@@ -143,14 +143,14 @@ grpc::Status is_taken_up(uint64_t id) {
 grpc::Status why_not_open(JobStore& store, uint64_t id) {
   const auto stored = store.job(id);
   if (const grpc::Status there = job_is_there(id, stored); !there.ok()) return there;
-  if (!has_ended((*stored)->state)) {
-    return farm::retry_later(
-        grpc::StatusCode::UNAVAILABLE,
-        fmt::format("job {} {}", id,
-                    (*stored)->reason.empty() ? "is being taken up" : (*stored)->reason),
-        std::chrono::seconds(1));
+  if (has_ended((*stored)->state)) {
+    return {grpc::StatusCode::FAILED_PRECONDITION, fmt::format("job {} has ended", id)};
   }
-  return {grpc::StatusCode::FAILED_PRECONDITION, fmt::format("job {} has ended", id)};
+  const std::string& reason = (*stored)->reason;
+  if (reason.empty()) return is_taken_up(id);
+  // That was tried, and may not come to pass for days: whoever asks is told why, and waits for none
+  // of it.
+  return {grpc::StatusCode::FAILED_PRECONDITION, fmt::format("job {} {}", id, reason)};
 }
 
 }  // namespace hyades::coordinator

@@ -19,7 +19,7 @@ class VideoMaker;
 grpc::Status check_priority(int priority);
 
 /// Why a job that is not in memory is not open: NOT_FOUND, FAILED_PRECONDITION for one that has
-/// ended, UNAVAILABLE for one that is being recovered.
+/// ended or could not be recovered yet, UNAVAILABLE for one that is being recovered.
 grpc::Status why_not_open(JobStore& store, uint64_t job);
 /// UNAVAILABLE, as somebody is just recovering the job.
 grpc::Status is_taken_up(uint64_t job);

@@ -418,6 +418,10 @@ TEST_F(NeverFreezes, AJobThatCannotBeTakenUpNowWaitsAndSaysWhy) {
   ASSERT_TRUE(world.jobs->Explain(world.context().get(), about(job), &why).ok());
   ASSERT_EQ(why.reasons_size(), 1);
   EXPECT_NE(why.reasons(0).find("waits to be taken up again"), std::string::npos) << why.reasons(0);
+  v1::JobResponse paused;
+  const grpc::Status refused = world.jobs->Pause(world.context().get(), about(job), &paused);
+  EXPECT_EQ(refused.error_code(), grpc::StatusCode::FAILED_PRECONDITION) << "who comes again waits";
+  EXPECT_NE(refused.error_message().find("disk is full"), std::string::npos);
   trouble->of_frames(Trouble::Kind::none);
   const auto busy = worker();
   EXPECT_TRUE(world.wait_for(job, v1::JOB_STATE_DONE));
