@@ -23,13 +23,15 @@ struct PointLightDesc {
   Animated<Vec3> at{Vec3(0.0F)};
   Animated<Rgb> color{Rgb(1.0F)};
   Animated<float> power{10.0F};
-  std::string image;  ///< lat-long, of how much goes where; empty: the same everywhere
+  Animated<float> radius{0.0F};  ///< of the ball that shines; 0: a single place
+  std::string image;             ///< lat-long, of how much goes where; empty: the same everywhere
 
   template <class Self, class Visitor>
   static void fields(Self& self, Visitor& visit) {
     visit.animated("at", self.at, kAnyNumber.in("length"));
     visit.color("color", self.color, kNotNegative);
     visit.animated("power", self.power, kNotNegative.in("W"));
+    visit.animated("radius", self.radius, kNotNegative.in("length"));
     visit.file("image", self.image);
   }
 };
@@ -39,6 +41,7 @@ struct SpotLightDesc {
   Animated<Vec3> at{Vec3(0.0F)};
   Animated<Rgb> color{Rgb(1.0F)};
   Animated<float> power{10.0F};  ///< as if it shone all round
+  Animated<float> radius{0.0F};  ///< of the ball that shines; 0: a single place
   Animated<Vec3> look_at{Vec3(0.0F, -1.0F, 0.0F)};
   Animated<float> angle{30.0F};  ///< half that of the cone
   Animated<float> blend{0.2F};   ///< share of the cone that fades
@@ -48,6 +51,7 @@ struct SpotLightDesc {
     visit.animated("at", self.at, kAnyNumber.in("length"));
     visit.color("color", self.color, kNotNegative);
     visit.animated("power", self.power, kNotNegative.in("W"));
+    visit.animated("radius", self.radius, kNotNegative.in("length"));
     visit.animated("look_at", self.look_at, kAnyNumber.in("length"));
     visit.keep_apart("at", self.at, "look_at", self.look_at);
     visit.animated("angle", self.angle, Range{0.0, 180.0, true}.in("degrees"));
@@ -60,6 +64,7 @@ struct ProjectorLightDesc {
   Animated<Vec3> at{Vec3(0.0F)};
   Animated<Rgb> color{Rgb(1.0F)};
   Animated<float> power{10.0F};  ///< as if it shone all round
+  Animated<float> radius{0.0F};  ///< of the ball that shines; 0: a single place
   Animated<Vec3> look_at{Vec3(0.0F, -1.0F, 0.0F)};
   Animated<Vec3> up{Vec3(0.0F, 1.0F, 0.0F)};  ///< of its picture
   Animated<float> fov{40.0F};                 ///< across the picture's shorter side
@@ -70,6 +75,7 @@ struct ProjectorLightDesc {
     visit.animated("at", self.at, kAnyNumber.in("length"));
     visit.color("color", self.color, kNotNegative);
     visit.animated("power", self.power, kNotNegative.in("W"));
+    visit.animated("radius", self.radius, kNotNegative.in("length"));
     visit.animated("look_at", self.look_at, kAnyNumber.in("length"));
     visit.keep_apart("at", self.at, "look_at", self.look_at);
     visit.direction("up", self.up);

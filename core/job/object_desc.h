@@ -22,7 +22,9 @@ struct EmitDesc {
   /// Multiplied with color: how bright it looks; or what the whole shape gives off, with a plain
   /// color (a texture only shares it out).
   Animated<float> amount{1.0F};
-  bool two_sided = false;   ///< open shapes: give light from the back too
+  bool two_sided = false;  ///< open shapes: give light from the back too
+  Animated<float> spread{
+      180.0F};              ///< twice the angle from the normal that light leaves at, at most
   std::string light_group;  ///< empty: none
 
   template <class Self, class Visitor>
@@ -31,6 +33,7 @@ struct EmitDesc {
     visit.either("radiance", kNotNegative.in("W/(m² sr)"), "power", kNotNegative.in("W"), self.unit,
                  self.amount);
     visit.flag("two_sided", self.two_sided);
+    visit.animated("spread", self.spread, Range{0.0, 180.0, true}.in("degrees"));
     visit.light_group("light_group", self.light_group);
   }
 };

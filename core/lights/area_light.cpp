@@ -10,6 +10,7 @@ namespace hyades::core {
 AreaLight::AreaLight(const SurfaceEmission& emission, double brightness) : emission_(emission) {
   power_ =
       static_cast<float>(brightness * static_cast<double>(kPi) * (emission.two_sided ? 2.0 : 1.0));
+  if (emission.profile) power_ *= emission.profile->mean();
   if (!(power_ > 0.0F)) power_ = 0.0F;
 }
 
@@ -23,6 +24,7 @@ void AreaLight::set_surface(const Bounds& box, const DirectionCone& normals) {
   bounds.box = box;
   bounds.normals = normals;
   bounds.two_sided = emission_.two_sided;
+  if (emission_.profile) emission_.profile->narrow(bounds);
   bounds.set_power(power_);
   bounds_ = bounds.power > 0.0F && !box.empty() ? std::optional(bounds) : std::nullopt;
 }
@@ -47,24 +49,34 @@ std::optional<EmissionSample> AreaLight::sample_emission(float time, float pick,
     if (inner) normal = -normal;
     u.x = inner ? 2.0F * u.x - 1.0F : 2.0F * u.x;
   }
-  const Vec3 local = square_to_cosine_hemisphere(u);
-  sample.direction = glm::normalize(Frame::around(normal).to_world(local));
+  sample.direction = glm::normalize(
+      emission_.profile ? emission_.profile->choose(normal, u)
+                        : Frame::around(normal).to_world(square_to_cosine_hemisphere(u)));
   const float cosine = std::abs(glm::dot(sample.direction, sample.on.ng));
   sample.pdf_direction = pdf_outward(sample.on.ng, sample.direction);
   if (!(sample.pdf_direction > 0.0F)) return std::nullopt;
-  sample.weight = emission_.radiance * (cosine / (sample.pdf_place * sample.pdf_direction));
+  sample.weight = emitted(sample.on.ng, sample.direction) *
+                  (cosine / (sample.pdf_place * sample.pdf_direction));
+  if (is_black(sample.weight)) return std::nullopt;
   if (emission_.varies()) sample.weight *= emission_.share(sample.on);
   return sample;
 }
 
 float AreaLight::pdf_outward(const Vec3& normal, const Vec3& outward) const {
   const float cosine = glm::dot(normal, outward);
-  return emission_.two_sided ? 0.5F * cosine_hemisphere_pdf(std::abs(cosine))
-                             : cosine_hemisphere_pdf(cosine);
+  const float sides = emission_.two_sided ? 0.5F : 1.0F;
+  if (emission_.profile) {
+    const bool inner = emission_.two_sided && cosine < 0.0F;
+    return sides * emission_.profile->pdf(inner ? -normal : normal, outward);
+  }
+  return sides * cosine_hemisphere_pdf(emission_.two_sided ? std::abs(cosine) : cosine);
 }
 
 Rgb AreaLight::emitted(const Vec3& ng, const Vec3& outward) const {
-  return emission_.two_sided || glm::dot(ng, outward) > 0.0F ? emission_.radiance : Rgb(0.0F);
+  const float cosine = glm::dot(ng, outward);
+  if (!emission_.two_sided && !(cosine > 0.0F)) return Rgb(0.0F);
+  if (!emission_.profile) return emission_.radiance;
+  return emission_.radiance * emission_.profile->share(cosine < 0.0F ? -ng : ng, outward);
 }
 
 std::optional<LightSample> AreaLight::seen_from(const Vec3& from, const Place& place) const {

@@ -8,7 +8,8 @@
 namespace hyades::core {
 
 /// What all lights on surfaces have in common: light from the outer side of a surface, or from
-/// both, the same in all directions, and densities per area turned into densities per solid angle.
+/// both, the same in all directions or by a profile, and densities per area turned into densities
+/// per solid angle.
 class AreaLight : public Light {
  public:
   /// `brightness`: the integral of the emission's luminance over the surface when the shutter opens
@@ -29,8 +30,8 @@ class AreaLight : public Light {
   Rgb radiance(const SurfacePoint& on, const Vec3& outward) const override;
   float power() const override { return power_; }
 
-  /// A place as choose_place has it, a direction in proportion to its cosine with the normal; of
-  /// two-sided lights on either side alike.
+  /// A place as choose_place has it, a direction in proportion to its cosine with the normal, or as
+  /// the profile chooses it; of two-sided lights on either side alike.
   std::optional<EmissionSample> sample_emission(float time, float pick, const Vec2& place,
                                                 const Vec2& direction) const override;
   float pdf_outward(const Vec3& normal, const Vec3& outward) const override;
@@ -54,14 +55,14 @@ class AreaLight : public Light {
   /// light to `from`.
   std::optional<LightSample> seen_from(const Vec3& from, const Place& place) const;
 
-  const SurfaceEmission& emission() const { return emission_; }
-  bool is_dark() const { return power_ == 0.0F; }
-
- private:
   /// The radiance that leaves a place with unit outer normal `ng` towards `outward`, where the
   /// emission does not vary.
   Rgb emitted(const Vec3& ng, const Vec3& outward) const;
 
+  const SurfaceEmission& emission() const { return emission_; }
+  bool is_dark() const { return power_ == 0.0F; }
+
+ private:
   SurfaceEmission emission_;
   float power_;
   std::optional<Vec3> middle_;

@@ -11,6 +11,7 @@
 #include "core/lights/environment_map.h"
 #include "core/lights/gobo.h"
 #include "core/lights/light.h"
+#include "core/lights/point_source.h"
 #include "core/lights/surface_emission.h"
 
 /// One maker per kind of light.
@@ -33,26 +34,31 @@ std::vector<LightPtr> make_area_lights(const World& world, std::span<const uint3
 double surface_area(const World& world, uint32_t object);
 
 /// Isotropic point of total flux `power` [W] per channel: intensity power / (4 pi) [W/sr].
-LightPtr make_point_light(const Vec3& position, const Rgb& power);
+PointSourcePtr make_point_light(const Vec3& position, const Rgb& power);
 
 /// A spot light, as bright as a point light of flux `power` (the cone takes light away, it does not
 /// gather it), but only within the cosine `cos_outer` of unit `direction`: full inside `cos_inner`,
 /// with the smooth step 3 t^2 - 2 t^3 of the cosine in between.
-LightPtr make_spot_light(const Vec3& position, const Vec3& direction, const Rgb& power,
-                         float cos_inner, float cos_outer);
+PointSourcePtr make_spot_light(const Vec3& position, const Vec3& direction, const Rgb& power,
+                               float cos_inner, float cos_outer);
 
 /// A goniometric light: a point light of flux `power`, times what `map` has in each direction: 1
 /// there is the point light itself. The columns of `axes`, orthonormal and possibly mirrored, are
 /// the map's x, y (its top) and z in the world.
-LightPtr make_goniometric_light(const Vec3& position, const Mat3& axes, const Rgb& power,
-                                std::shared_ptr<const EnvironmentMap> map);
+PointSourcePtr make_goniometric_light(const Vec3& position, const Mat3& axes, const Rgb& power,
+                                      std::shared_ptr<const EnvironmentMap> map);
 
 /// A projector: a point light of flux `power`, but only through `gobo`, whose colours it takes:
 /// white is the point light itself. `fov` [radians, in (0, pi)] is the angle across the gobo's
 /// shorter side. The columns of `axes`, orthonormal and possibly mirrored, lead to the gobo's right
 /// and upper sides and through its middle.
-LightPtr make_projector_light(const Vec3& position, const Mat3& axes, const Rgb& power, float fov,
-                              std::shared_ptr<const Gobo> gobo);
+PointSourcePtr make_projector_light(const Vec3& position, const Mat3& axes, const Rgb& power,
+                                    float fov, std::shared_ptr<const Gobo> gobo);
+
+/// What `source` gives off, not from its place but from all of a ball around it: placement `object`
+/// of `world`, a sphere that its matrix only moves. From afar it is that source; near by its
+/// shadows are soft. Within the ball there is no light of it. `world` must outlive the light.
+LightPtr make_ball_light(const World& world, uint32_t object, PointSourcePtr source);
 
 /// Sun: light travelling along unit `direction`, irradiance [W/m^2] on a facing surface, from a
 /// disc of angular diameter `angle` [radians, at most pi] and uniform radiance; less than 1e-4

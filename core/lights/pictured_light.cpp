@@ -122,13 +122,13 @@ class ProjectorLight final : public TurnedSource {
 
 }  // namespace
 
-LightPtr make_goniometric_light(const Vec3& position, const Mat3& axes, const Rgb& power,
-                                std::shared_ptr<const EnvironmentMap> map) {
+PointSourcePtr make_goniometric_light(const Vec3& position, const Mat3& axes, const Rgb& power,
+                                      std::shared_ptr<const EnvironmentMap> map) {
   return std::make_shared<GoniometricLight>(position, axes, power, std::move(map));
 }
 
-LightPtr make_projector_light(const Vec3& position, const Mat3& axes, const Rgb& power, float fov,
-                              std::shared_ptr<const Gobo> gobo) {
+PointSourcePtr make_projector_light(const Vec3& position, const Mat3& axes, const Rgb& power,
+                                    float fov, std::shared_ptr<const Gobo> gobo) {
   const SinCos half = sin_cos(0.5F * fov);
   return std::make_shared<ProjectorLight>(position, axes, power, half.sin / half.cos,
                                           std::move(gobo));

@@ -53,12 +53,12 @@ class SpotLight final : public PointSource {
 
 }  // namespace
 
-LightPtr make_point_light(const Vec3& position, const Rgb& power) {
+PointSourcePtr make_point_light(const Vec3& position, const Rgb& power) {
   return std::make_shared<SpotLight>(position, Vec3(0.0F, 1.0F, 0.0F), power, -1.0F, -1.0F);
 }
 
-LightPtr make_spot_light(const Vec3& position, const Vec3& direction, const Rgb& power,
-                         float cos_inner, float cos_outer) {
+PointSourcePtr make_spot_light(const Vec3& position, const Vec3& direction, const Rgb& power,
+                               float cos_inner, float cos_outer) {
   return std::make_shared<SpotLight>(position, direction, power, cos_inner, cos_outer);
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <memory>
 #include <optional>
 
 #include "core/base/vec.h"
@@ -27,7 +28,7 @@ class PointSource : public Light {
   float pdf_place(const SurfacePoint& on, const Vec3& direction) const final;
   float pdf_outward(const Vec3& normal, const Vec3& outward) const final;
 
- protected:
+  const Vec3& position() const { return position_; }
   const Rgb& intensity() const { return intensity_; }
 
   /// What goes in a direction, of intensity().
@@ -43,5 +44,7 @@ class PointSource : public Light {
   Vec3 position_;
   Rgb intensity_;
 };
+
+using PointSourcePtr = std::shared_ptr<const PointSource>;
 
 }  // namespace hyades::core

@@ -42,8 +42,8 @@ class SkyModel {
   };
   Matter matter(float height) const;
 
-  /// Of a way from `radius` (from the Earth's middle) in a direction of cosine `mu` to the zenith,
-  /// to the top of the air.
+  /// The share of light that is left on a way from `radius` (from the Earth's middle) in a
+  /// direction of cosine `mu` to the zenith, to the top of the air.
   Rgb to_space(float radius, float mu) const;
   Rgb integrate_to_space(float radius, float mu) const;
   /// The sun's light at a place: nothing where the Earth is in the way.

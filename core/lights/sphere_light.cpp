@@ -107,10 +107,11 @@ std::optional<LightSample> SphereLight::sample_direct(const Vec3& from, float ti
   const double distance = std::sqrt(glm::dot(to_light, to_light));
   if (!(distance > 0.0)) return std::nullopt;
   sample.direction = Vec3(to_light / distance);
-  sample.radiance = emission().radiance;
+  const Vec3 ng(normal);
+  sample.radiance = emitted(ng, -sample.direction);
+  if (is_black(sample.radiance)) return std::nullopt;
   sample.pdf = cap->pdf();
   sample.distance = static_cast<float>(distance);
-  const Vec3 ng(normal);
   sample.position = Vec3(position);
   sample.position += ng * quadric_clearance(sample.position, ng);
   sample.normal = ng;

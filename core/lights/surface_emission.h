@@ -5,13 +5,14 @@
 
 #include "core/base/distribution.h"
 #include "core/geometry/surface_point.h"
+#include "core/lights/angular_profile.h"
 #include "core/materials/make_material.h"
 #include "core/textures/texture.h"
 
 namespace hyades::core {
 
 /// What the surface of a lamp gives off, from place to place: a radiance, times a texture's colour,
-/// times what there is of the surface.
+/// times what there is of the surface; and how that is shared out among directions.
 struct SurfaceEmission {
   Rgb radiance{0.0F};      ///< where texture and opacity are 1 [W/(m^2 sr)]
   bool two_sided = false;  ///< from the inner side too
@@ -20,6 +21,8 @@ struct SurfaceEmission {
   TexturePtr texture = nullptr;
   /// Whose opacity counts, as paths that meet the surface see it. Null: 1.
   MaterialPtr cutout = nullptr;
+  /// How much of it goes where; null: the same to all sides.
+  ProfilePtr profile = nullptr;
   /// About how often texture and opacity are looked up to find out where the lamp is bright.
   uint32_t look_ups = 1U << 18U;
 
@@ -48,7 +51,7 @@ class BrightnessGrid {
   /// A place for u in [0, 1)^2.
   Vec2 sample(const Vec2& u) const { return cells_.sample(u).at; }
 
-  /// Its density; of places a little outside that at the edge.
+  /// The density of sample(); for places a little outside that at the edge.
   float pdf(const Vec2& at) const;
 
   /// The mean brightness that was found.

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <map>
 #include <numeric>
 #include <optional>
 #include <set>
@@ -99,11 +100,37 @@ class SceneBuilder {
     if (auto done = add_bodies(job_, *flat, looks_, *scene_, placements); !done) return done;
     scene_->medium_groups = looks_.medium_groups();
     warn_of_open_bodies(*flat, cache_, *scene_);
+    if (auto done = add_lamps(placements); !done) return done;
     auto world = cache_.world(std::move(placements));
     if (!world) return blame(*flat, world.error());
     scene_->world = *world;
     if (auto done = check_exteriors(job_, *flat, *scene_); !done) return done;
     return add_emitters(*flat);
+  }
+
+  /// The balls of lights that have a size, after all objects: what only rays meet that were
+  /// scattered.
+  Status add_lamps(std::vector<Placement>& placements) {
+    const LightSetting setting{time_, job_.units};
+    for (const LightDesc& desc : job_.lights) {
+      auto lamp = make_lamp(desc, setting, cache_);
+      if (!lamp) return Error{Diagnostic{desc.where, lamp.error().message}.to_string()};
+      if (!*lamp) continue;
+      lamps_.emplace(&desc, PlacedLamp{(*lamp)->source, static_cast<uint32_t>(placements.size())});
+      scene_->objects.push_back({.material = make_null(),
+                                 .name = desc.name,
+                                 .material_name = kDefaultMaterial,
+                                 .ids = {id_of(desc.name), id_of(kDefaultMaterial)}});
+      Placement ball;
+      ball.shape.kind = Shape::Kind::sphere;
+      ball.shape.radius = (*lamp)->radius;
+      ball.to_world[0][3] = Vec4((*lamp)->source->position(), 1.0F);
+      ball.visible_to_camera = false;
+      ball.blocks_light = false;
+      ball.changes_between_frames = (*lamp)->changes_between_frames;
+      placements.push_back(std::move(ball));
+    }
+    return {};
   }
 
   std::set<std::string> materials_seen_from_the_front() const {
@@ -191,6 +218,7 @@ class SceneBuilder {
     emission.two_sided = emit.two_sided;
     emission.texture = color->texture;
     emission.cutout = material->is_cutout() ? material : nullptr;
+    emission.profile = make_spread(emit.spread.at(time_) * kRadians);
     emission.look_ups = look_ups;
     const float amount = emit.amount.at(time_);
     std::optional<float> power;
@@ -219,6 +247,12 @@ class SceneBuilder {
   Status add_lights() {
     const LightSetting setting = this->setting();
     for (const LightDesc& desc : job_.lights) {
+      if (const auto lamp = lamps_.find(&desc); lamp != lamps_.end()) {
+        const auto& [source, object] = lamp->second;
+        scene_->objects[object].light =
+            add_light(make_ball_light(*scene_->world, object, source), desc.name, desc.light_group);
+        continue;
+      }
       auto light = make_light(desc, setting, cache_);
       if (!light) return Error{Diagnostic{desc.where, light.error().message}.to_string()};
       add_light(*light, desc.name, desc.light_group);
@@ -317,6 +351,11 @@ class SceneBuilder {
   JobTime time_;
   SceneCache& cache_;
   Appearance looks_;
+  struct PlacedLamp {
+    PointSourcePtr source;
+    uint32_t object;  ///< index of its ball's placement
+  };
+  std::map<const LightDesc*, PlacedLamp> lamps_;
   std::unique_ptr<Scene> scene_ = std::make_unique<Scene>();
 };
 

@@ -1,6 +1,8 @@
 #include "core/scene/light_makers.h"
 
+#include <algorithm>
 #include <cmath>
+#include <optional>
 #include <utility>
 #include <variant>
 
@@ -54,8 +56,8 @@ Rgb power_of(const Desc& desc, const JobTime& time) {
   return desc.color.at(time) * desc.power.at(time);
 }
 
-Result<LightPtr> make(const PointLightDesc& desc, const LightPlace& place,
-                      const LightSetting& setting, SceneCache& cache) {
+Result<PointSourcePtr> make(const PointLightDesc& desc, const LightPlace& place,
+                            const LightSetting& setting, SceneCache& cache) {
   const Vec3 at = place.place(desc.at.at(setting.time));
   const Rgb power = power_of(desc, setting.time);
   if (desc.image.empty()) return make_point_light(at, power);
@@ -64,8 +66,8 @@ Result<LightPtr> make(const PointLightDesc& desc, const LightPlace& place,
   return make_goniometric_light(at, place.axes(Mat3(1.0F)), power, std::move(*map));
 }
 
-Result<LightPtr> make(const ProjectorLightDesc& desc, const LightPlace& place,
-                      const LightSetting& setting, SceneCache& cache) {
+Result<PointSourcePtr> make(const ProjectorLightDesc& desc, const LightPlace& place,
+                            const LightSetting& setting, SceneCache& cache) {
   auto gobo = cache.gobo(desc.image);
   if (!gobo) return gobo.error();
   const JobTime& time = setting.time;
@@ -75,8 +77,8 @@ Result<LightPtr> make(const ProjectorLightDesc& desc, const LightPlace& place,
                               power_of(desc, time), desc.fov.at(time) * kRadians, std::move(*gobo));
 }
 
-Result<LightPtr> make(const SpotLightDesc& desc, const LightPlace& place,
-                      const LightSetting& setting, SceneCache& /*cache*/) {
+Result<PointSourcePtr> make(const SpotLightDesc& desc, const LightPlace& place,
+                            const LightSetting& setting, SceneCache& /*cache*/) {
   const JobTime& time = setting.time;
   const Vec3 at = place.place(desc.at.at(time));
   const Vec3 towards = place.place(desc.look_at.at(time)) - at;
@@ -93,14 +95,42 @@ Result<LightPtr> make(const SunLightDesc& desc, const LightPlace& place,
                         desc.angle.at(time) * kRadians, setting.world_radius);
 }
 
+bool moves(const LightDesc& desc) {
+  return std::any_of(desc.transform.begin(), desc.transform.end(), [](const TransformStep& step) {
+    return !step.vector.is_constant() || !step.angle.is_constant();
+  });
+}
+
 }  // namespace
 
 Result<LightPtr> make_light(const LightDesc& desc, const LightSetting& setting, SceneCache& cache) {
   const LightPlace place(desc.transform, setting);
-  auto light =
-      std::visit([&](const auto& kind) { return make(kind, place, setting, cache); }, desc.kind);
-  if (!light) return light.error().in("light '" + desc.name + "'");
-  return light;
+  return std::visit(
+      [&](const auto& kind) -> Result<LightPtr> {
+        auto light = make(kind, place, setting, cache);
+        if (!light) return light.error().in("light '" + desc.name + "'");
+        return LightPtr(std::move(*light));
+      },
+      desc.kind);
+}
+
+Result<std::optional<Lamp>> make_lamp(const LightDesc& desc, const LightSetting& setting,
+                                      SceneCache& cache) {
+  const LightPlace place(desc.transform, setting);
+  return std::visit(
+      [&](const auto& kind) -> Result<std::optional<Lamp>> {
+        if constexpr (requires { kind.radius; }) {
+          const float radius = kind.radius.at(setting.time) * setting.units;
+          if (!(radius > 0.0F)) return std::optional<Lamp>();
+          auto source = make(kind, place, setting, cache);
+          if (!source) return source.error().in("light '" + desc.name + "'");
+          const bool changes = !kind.at.is_constant() || !kind.radius.is_constant() || moves(desc);
+          return std::optional<Lamp>({std::move(*source), radius, changes});
+        } else {
+          return std::optional<Lamp>();
+        }
+      },
+      desc.kind);
 }
 
 }  // namespace hyades::core

@@ -91,6 +91,22 @@ lights:
   bulb: {type: point, image: board.png, at: [0.9, 1.6, 0.5], power: 30, color: [1, 0.6, 0.3], transform: [{rotate_y: 30}]}
 )",
        256, 0.03},
+      {"lamps_with_sizes_and_a_spread", R"(
+camera: {look_from: [0, 1, 3.4], look_at: [0, 0.8, 0], fov: 40}
+materials:
+  white: {type: lambert, color: [0.7, 0.6, 0.5]}
+  shiny: {type: glossy, color: [0.2, 0.4, 0.6], reflectiveness: 0.6, glossiness: 0.7}
+objects:
+  floor: {shape: rectangle, size: [4, 4], material: white}
+  back: {shape: rectangle, size: [4, 4], transform: [{rotate_x: 90}], at: [0, 1, -1], material: white}
+  ball: {shape: sphere, radius: 0.4, at: [0.3, 0.4, 0], material: shiny}
+  softbox: {shape: rectangle, size: [0.6, 0.4], transform: [{rotate_x: 180}], at: [-0.6, 1.9, 0], emit: {power: 30, spread: 70}}
+lights:
+  spot: {type: spot, radius: 0.15, at: [0.9, 1.6, 0.5], look_at: [0.2, 0, 0], angle: 35, blend: 0.4, power: 60, color: [1, 0.6, 0.3]}
+  bulb: {type: point, radius: 0.1, at: [-0.9, 0.5, 0.6], power: 5}
+  slide: {type: projector, radius: 0.05, image: board.png, at: [-0.8, 1.5, 1.4], look_at: [0.2, 0.7, -1], fov: 50, power: 90}
+)",
+       256, 0.03},
       {"sky_and_sun", R"(
 camera: {look_from: [0, 1.2, 4], look_at: [0, 0.6, 0], fov: 35}
 materials:

@@ -100,13 +100,8 @@ def _add_body(context: Context, light: PlacedLight, body: objects.Object) -> Non
 
 def _add_point(context: Context, light: PlacedLight, color: Any) -> None:
     data = light.object.data
-    power = float(data.energy)
     radius = float(data.shadow_soft_size)
-    if radius <= 0:
-        _add(context, light, lights.Point(at=light.at, color=color, power=power))
-        return
-    emit = objects.Emit(color=color, power=power)
-    _add_body(context, light, objects.Sphere(radius=radius, at=light.at, material=materials.NullMaterial(), emit=emit))
+    _add(context, light, lights.Point(at=light.at, color=color, power=float(data.energy), radius=radius))
 
 
 def _add_spot(context: Context, light: PlacedLight, color: Any) -> None:
@@ -114,8 +109,7 @@ def _add_spot(context: Context, light: PlacedLight, color: Any) -> None:
     half = data.spot_size / 2
     ahead = axes.numbers(numpy.array(light.at) + light.direction)
     keys = {"at": light.at, "look_at": ahead, "color": color, "power": float(data.energy)}
-    if data.shadow_soft_size > 0:
-        context.complain(light.where, "spots have no radius in the job; shadows are sharp")
+    keys["radius"] = float(data.shadow_soft_size)
     stretch = numpy.linalg.norm(light.matrix[:3, :2], axis=0) / max(numpy.linalg.norm(light.matrix[:3, 2]), 1e-9)
     is_round = numpy.allclose(stretch, 1, rtol=1e-3)
     # Until 3.6 Cycles' cones were darker towards their edge, by the cosine.
@@ -152,8 +146,6 @@ def _add_sun(context: Context, light: PlacedLight, color: Any) -> None:
 
 def _add_area(context: Context, light: PlacedLight, color: Any) -> None:
     data = light.object.data
-    if data.spread < math.pi - 1e-4:
-        context.complain(light.where, "a spread below 180 degrees is not supported; it shines to all sides of its front")
     width = data.size
     height = data.size_y if data.shape in ("RECTANGLE", "ELLIPSE") else data.size
     is_round = data.shape in ("DISK", "ELLIPSE")
@@ -165,7 +157,8 @@ def _add_area(context: Context, light: PlacedLight, color: Any) -> None:
         return
     # Until Blender 4 the same watts are darker by pi / 4.
     radiance = data.energy / ((math.pi if bpy.app.version >= (4, 0) else 4) * area)
-    emit = objects.Emit(color=color, radiance=radiance)
+    spread = min(max(math.degrees(data.spread), 1.0), 180.0)  # Cycles' least
+    emit = objects.Emit(color=color, radiance=radiance, spread=spread)
     body = objects.Mesh(mesh=mesh, material=materials.NullMaterial(), emit=emit, transform=axes.steps(light.matrix))
     _add_body(context, light, body)
 

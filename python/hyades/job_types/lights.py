@@ -34,6 +34,10 @@ class Point(Light):
     """Times power. Range: >= 0."""
     power: Number = key("number, animated", 10, low=0)
     """In all directions together. Unit: W. Range: >= 0."""
+    radius: Number = key("number, animated", 0, low=0)
+    """Of the ball that gives off the light: soft shadows, and highlights of its size. Cameras do
+    not see it, mirrors do; within it there is no light. A `transform` moves it and leaves its size.
+    Unit: length. Range: >= 0."""
     image: File | None = key("file")
     """How much goes where: a lat-long picture, laid around the light as that of the environment is
     around the scene and turned by the light's `transform`. Its colours multiply the light, 1 leaves
@@ -56,6 +60,10 @@ class Spot(Light):
     """Times power. Range: >= 0."""
     power: Number = key("number, animated", 10, low=0)
     """As if it shone all round: narrowing the cone does not brighten it. Unit: W. Range: >= 0."""
+    radius: Number = key("number, animated", 0, low=0)
+    """Of the ball that gives off the light: soft shadows, and highlights of its size. Cameras do
+    not see it, mirrors do; within it there is no light. A `transform` moves it and leaves its size.
+    Unit: length. Range: >= 0."""
     look_at: Vector = key("vector, animated", (0, -1, 0))
     """The point in the middle of the cone. Unit: length. Range: not at."""
     angle: Number = key("number, animated", 30, low=0, high=180, above=True)
@@ -80,6 +88,10 @@ class Projector(Light):
     power: Number = key("number, animated", 10, low=0)
     """As if it shone all round and in white: a smaller picture is not brighter. Unit: W. Range: >=
     0."""
+    radius: Number = key("number, animated", 0, low=0)
+    """Of the ball that gives off the light: soft shadows, and highlights of its size. Cameras do
+    not see it, mirrors do; within it there is no light. A `transform` moves it and leaves its size.
+    Unit: length. Range: >= 0."""
     look_at: Vector = key("vector, animated", (0, -1, 0))
     """The point in the middle of the picture. Unit: length. Range: not at."""
     up: Vector = key("vector, animated", (0, 1, 0))

@@ -27,6 +27,10 @@ class Emit(Described):
     opacity of its material. Unit: W. Range: >= 0. Default: none."""
     two_sided: bool = key("switch", False)
     """Shines on the inner side too (the back of a rectangle or disk)."""
+    spread: Number = key("number, animated", 180, low=0, high=180, above=True)
+    """Twice the angle from the normal beyond which there is no light, as through the grid of a soft
+    box: 1 - tan(angle) / tan(spread / 2) of the light comes through, made brighter so that the
+    watts stay. Unit: degrees. Range: above 0, at most 180."""
     light_group: str | None = key("text")
     """Which light group its light belongs to; see Layers. Range: letters, digits, _ and -. Default:
     none."""

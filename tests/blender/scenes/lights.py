@@ -37,6 +37,18 @@ def spot() -> None:
 
 
 @scene()
+def spot_with_radius() -> None:
+    room()
+    light("SPOT", 600, at=(2, -2, 5), towards=(0, 0, 0.5), spot_size=math.radians(50), spot_blend=0.5, shadow_soft_size=0.4)
+
+
+@scene()
+def area_with_spread() -> None:
+    room()
+    light("AREA", 200, at=(1, -2, 4), towards=(0, 0, 0.5), shape="RECTANGLE", size=2, size_y=1, spread=math.radians(70))
+
+
+@scene()
 def area_rectangle() -> None:
     room()
     light("AREA", 200, at=(1, -2, 4), towards=(0, 0, 0.5), shape="RECTANGLE", size=2, size_y=1)
