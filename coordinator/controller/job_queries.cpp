@@ -359,28 +359,32 @@ grpc::Status JobQueries::picture(uint64_t id, const StoredOutput& output, core::
   constexpr uint64_t kLeast = uint64_t{16} << 20U;
   constexpr uint64_t kOfPixel = 32;  // of four channels, and once more of what is made of them
   FilmCopies& copies = context_.film_copies;
-  const auto file_room = copies.hold(output.size);
-  if (!file_room) return no_room(output.size, copies);
-  const auto bytes = read_output(context_.output_folder(id), output);
-  if (!bytes) return {grpc::StatusCode::DATA_LOSS, bytes.error().message};
-  // What turns out to be larger than was thought is tried again, once it has so much more room; one
-  // at a time it may be as large as its film.
-  const uint64_t most = copies.most() - output.size;
-  for (uint64_t held = std::max(kTimes * output.size, kLeast);; held *= 4) {
-    held = std::min(held, most);
+  if (output.size > copies.most()) return no_room(output.size, copies);
+  std::optional<core::Bytes> bytes;
+  // The file and what it holds. Few take more than a quarter of all room, whatever they are packed
+  // to; what turns out to be larger is tried again with more, at last with all there is.
+  const uint64_t likely = std::max(output.size + kTimes * output.size, kLeast);
+  for (uint64_t held = std::min(likely, copies.most() / 4);;
+       held = std::min(2 * held, copies.most())) {
+    if (held <= output.size && held < copies.most()) continue;
     room.reset();
     room = copies.hold(held);
     if (!room) return no_room_for_copy();
+    if (!bytes) {
+      auto read = read_output(context_.output_folder(id), output);
+      if (!read) return {grpc::StatusCode::DATA_LOSS, read.error().message};
+      bytes = std::move(*read);
+    }
     core::ImageLimits limits;
-    if (held < most) {
-      limits.max_pixels = std::min<uint64_t>(limits.max_pixels, held / kOfPixel);
+    if (held < copies.most()) {
+      limits.max_pixels = std::min<uint64_t>(limits.max_pixels, (held - output.size) / kOfPixel);
     }
     auto read = core::read_image(*bytes, output.path, core::ColorSpace::automatic, limits);
     if (read) {
       image = std::move(*read);
       return grpc::Status::OK;
     }
-    if (held == most) return {grpc::StatusCode::DATA_LOSS, read.error().message};
+    if (held == copies.most()) return {grpc::StatusCode::DATA_LOSS, read.error().message};
   }
 }
 

@@ -21,8 +21,8 @@ namespace {
 constexpr size_t kMostKeptBytes = size_t{128} << 20U;
 /// A picture of a frame in work is not made more often, however many samples have come.
 constexpr std::chrono::milliseconds kFreshFor{1000};
-/// Copies of films at a time: one of a large frame is a gigabyte.
-constexpr size_t kMostFilms = 2;
+/// Frames in work at a time: the copy of the film of a large one is a gigabyte.
+constexpr size_t kMostInWork = 2;
 constexpr size_t kMostFrames = 1000;
 constexpr int kMostFramesOfOne = 500;
 
@@ -45,10 +45,24 @@ std::string stamp_of(const v1::Frame& frame) {
   return fmt::format("{}:{}:{}", frame.samples_done(), is_over(frame), frame.restarts());
 }
 
+WebReply closing() {
+  return error_reply(farm::retry_later(grpc::StatusCode::UNAVAILABLE, "the coordinator ends",
+                                       std::chrono::seconds(1)));
+}
+
+bool lacks_room(const grpc::Status& status) {
+  return status.error_code() == grpc::StatusCode::RESOURCE_EXHAUSTED;
+}
+
 WebReply too_many() {
   return error_reply(farm::retry_later(grpc::StatusCode::RESOURCE_EXHAUSTED,
                                        "as many pictures are on their way as may be",
                                        std::chrono::seconds(1)));
+}
+
+/// The ETag of what is made of a finished file.
+std::string tag_of(const StoredOutput& file) {
+  return "\"" + farm::hex_from_wire(file.sha256) + "\"";
 }
 
 /// What a picture is made of.
@@ -89,6 +103,11 @@ void PicturesApi::close() {
   gate_->open = false;
 }
 
+bool PicturesApi::is_closed() const {
+  const core::MutexLock lock(gate_->mutex);
+  return !gate_->open;
+}
+
 void PicturesApi::add_routes(Router& router) {
   add_by_hand<v1::PictureRequest>(
       router, "GET", "/api/v1/jobs/{job}/frames/{frame}/picture",
@@ -112,54 +131,67 @@ void PicturesApi::add_routes(Router& router) {
 }
 
 void PicturesApi::answer_picture(const Asked& asked, const Asker& asker) {
+  if (is_closed()) return asker.answer(closing());
   FrameNow now;
   if (const grpc::Status known = controller_.queries().frame_now(asked.job, asked.frame, now);
       !known.ok()) {
-    asker.answer(error_reply(known));
-  } else if (is_over(now.frame)) {
-    asker.answer(reply_in_memory([&] { return of_file(asked, asker.owner, now); }));
-  } else if (const auto made = find(asked, now.tag, false)) {
-    asker.answer(*made);
-  } else if (!has_room(asker.owner)) {
-    asker.answer(too_many());
-  } else {
-    want(asked, asker);
+    return asker.answer(error_reply(known));
   }
+  const bool over = is_over(now.frame);
+  std::string tag = now.tag;
+  if (over) {
+    const auto file = best_file(asked);
+    if (!file) return asker.answer(error_reply(farm::unavailable(file.error())));
+    tag = *file ? tag_of(**file) : std::string();
+  }
+  if (const auto made = find(asked, tag, over)) return asker.answer(*made);
+  if (!has_room(asker.owner)) return asker.answer(too_many());
+  want(asked, asker);
 }
 
-WebReply PicturesApi::of_file(const Asked& asked, const farm::ByteBudget::Owner& owner,
-                              const FrameNow& now) {
+/// The finished file that shows best what is asked for; nothing where none shows it.
+core::Result<std::optional<StoredOutput>> PicturesApi::best_file(const Asked& asked) {
   const auto outputs = controller_.store().outputs_of(asked.job, asked.frame);
-  if (!outputs) return error_reply(farm::unavailable(outputs.error()));
-  const StoredOutput* best = nullptr;
+  if (!outputs) return outputs.error();
+  std::optional<StoredOutput> best;
   for (const StoredOutput& output : *outputs) {
     const int worth = worth_of(output.path, asked.half);
-    if (worth > (best == nullptr ? 0 : worth_of(best->path, asked.half))) best = &output;
+    if (worth > (best ? worth_of(best->path, asked.half) : 0)) best = output;
   }
-  if (best == nullptr) {
+  return best;
+}
+
+WebReply PicturesApi::of_file(const Asked& asked, const Askers& askers, const FrameNow& now) {
+  const auto best = best_file(asked);
+  if (!best) return error_reply(farm::unavailable(best.error()));
+  if (!*best) {
     return error_reply(
         {grpc::StatusCode::NOT_FOUND, fmt::format("no picture of frame {} is kept", asked.frame)});
   }
-  const std::string tag = "\"" + farm::hex_from_wire(best->sha256) + "\"";
+  const StoredOutput& file = **best;
+  const std::string tag = tag_of(file);
   if (const auto made = find(asked, tag, true)) return *made;
-  if (!has_room(owner)) return too_many();
+  const auto who = std::find_if(askers.begin(), askers.end(),
+                                [&](const Asker& asker) { return has_room(asker.owner); });
+  if (who == askers.end()) return too_many();
   core::Image image;
   std::shared_ptr<const void> room;
-  const grpc::Status read = controller_.queries().picture(asked.job, *best, image, room);
-  if (read.error_code() == grpc::StatusCode::DATA_LOSS)
-    return error_reply(damaged_output(best->path));
+  const grpc::Status read = controller_.queries().picture(asked.job, file, image, room);
+  if (read.error_code() == grpc::StatusCode::DATA_LOSS) {
+    return error_reply(damaged_output(file.path));
+  }
   if (!read.ok()) return error_reply(read);
   FrameNow plain = now;
   plain.tone_map = "srgb";  // a finished picture has its own
   plain.exposure = 0;
-  const bool exact = core::file_extension(best->path) == ".exr";
+  const bool exact = core::file_extension(file.path) == ".exr";
   WebReply reply = show(asked, plain, {std::move(image), {}, exact}, tag);
-  count(reply, owner);
+  count(reply, who->owner);
   keep(asked, tag, true, reply);
   return reply;
 }
 
-/// Answers with a picture of the frame's film, when its turn comes.
+/// Answers with a picture of the frame, when its turn comes.
 void PicturesApi::want(const Asked& asked, const Asker& asker) {
   if (!enqueue(asked, asker)) return asker.answer(error_reply(crowded()));
   begin_some();
@@ -167,7 +199,7 @@ void PicturesApi::want(const Asked& asked, const Asker& asker) {
 
 /// False where too many frames wait, or too many pictures of this one.
 bool PicturesApi::enqueue(const Asked& asked, const Asker& asker) {
-  const FrameId id{asked.job, asked.frame};
+  const JobAndFrame id{asked.job, asked.frame};
   const core::MutexLock lock(mutex_);
   const auto known = wanted_.find(id);
   if (known == wanted_.end()) {
@@ -198,55 +230,92 @@ bool PicturesApi::may_want(const Wanted& wanted, const Asked& asked, const std::
 }
 
 void PicturesApi::begin_some() {
-  while (const auto id = begin_next()) take_film(*id);
+  while (const auto id = begin_next()) take(*id);
 }
 
 /// The frame whose turn it is; none: as many are in work as may be, or their callers'.
-std::optional<PicturesApi::FrameId> PicturesApi::begin_next() {
+std::optional<PicturesApi::JobAndFrame> PicturesApi::begin_next() {
   const core::MutexLock lock(mutex_);
-  if (in_work_.size() >= kMostFilms) return std::nullopt;
+  const Clock::time_point now = Clock::now();
+  if (alone_) {
+    if (!in_work_.empty()) return std::nullopt;
+    const auto [id, owner] = *std::exchange(alone_, std::nullopt);
+    in_work_[id] = {owner, now};
+    return id;
+  }
+  if (in_work_.size() >= kMostInWork) return std::nullopt;
   const auto has_one = [&](const std::string& owner) HYADES_REQUIRES(mutex_) {
     return !owner.empty() && std::any_of(in_work_.begin(), in_work_.end(), [&](const auto& one) {
       return one.second.owner == owner;
     });
   };
-  const Clock::time_point now = Clock::now();
   // What was asked for while the pictures before are sent comes after them. (Clang does not see
   // that the lock is held where this is called.)
   const auto best = shares_.next(
       queue_.begin(), queue_.end(), now,
-      [&](const std::pair<FrameId, std::string>& one) HYADES_NO_THREAD_SAFETY_ANALYSIS {
+      [&](const std::pair<JobAndFrame, std::string>& one) HYADES_NO_THREAD_SAFETY_ANALYSIS {
         const bool may = !in_work_.contains(one.first) && !has_one(one.second);
         return may ? &one.second : nullptr;
       });
   if (best == queue_.end()) return std::nullopt;
-  const FrameId id = best->first;
+  const JobAndFrame id = best->first;
   in_work_[id] = {best->second, now};
   queue_.erase(best);
   return id;
 }
 
-void PicturesApi::take_film(FrameId id) {
-  controller_.steering().note_watched(id.first, id.second);
+/// The frame has found no memory beside another one: it goes on when that is over, alone, with what
+/// is `left` of what was taken already. False where there is nothing beside it.
+bool PicturesApi::put_back(JobAndFrame id, const Wanted& left) {
+  const core::MutexLock lock(mutex_);
+  if (in_work_.size() < 2) return false;
+  for (const auto& [asked, askers] : left) {
+    Askers& all = wanted_[id][asked];
+    all.insert(all.end(), askers.begin(), askers.end());
+  }
+  const auto work = in_work_.extract(id);
+  std::pair<JobAndFrame, std::string> waits{id, work.mapped().owner};
+  if (alone_) {
+    queue_.push_front(std::move(waits));
+  } else {
+    alone_ = std::move(waits);
+  }
+  return true;
+}
+
+void PicturesApi::take(JobAndFrame id) {
   // As of before the film, so that the picture never claims more than it shows.
   FrameNow now;
-  grpc::Status status = controller_.queries().frame_now(id.first, id.second, now);
-  if (status.ok()) {
-    status = controller_.queries().film_alone(
-        id.first, id.second,
-        [this, gate = gate_, id, now](const grpc::Status& found, const core::FilmInfo&,
-                                      std::shared_ptr<const core::Film> film) {
-          const core::MutexLock lock(gate->mutex);
-          if (!gate->open) return;
-          const bool taken = pool_.submit([this, id, now, found, film = std::move(film)] {
-            make_all(id, now, found, film.get());
-          });
-          if (!taken) {
-            end(id, [](const Asked&, const Askers&) { return error_reply(crowded()); });
-          }
-        });
+  const grpc::Status status =
+      is_closed() ? grpc::Status(grpc::StatusCode::UNAVAILABLE, "the coordinator ends")
+                  : controller_.queries().frame_now(id.first, id.second, now);
+  if (!status.ok()) {
+    end(id, [&](const Asked&, const Askers&) { return error_reply(status); });
+  } else if (is_over(now.frame)) {
+    const bool taken = pool_.submit([this, id, now] { take_files(id, now); });
+    if (!taken) end(id, [](const Asked&, const Askers&) { return error_reply(crowded()); });
+  } else {
+    take_film(id, now);
   }
+}
+
+void PicturesApi::take_film(JobAndFrame id, const FrameNow& now) {
+  controller_.steering().note_watched(id.first, id.second);
+  grpc::Status status = controller_.queries().film_alone(
+      id.first, id.second,
+      [this, gate = gate_, id, now](const grpc::Status& found, const core::FilmInfo&,
+                                    std::shared_ptr<const core::Film> film) {
+        const core::MutexLock lock(gate->mutex);
+        if (!gate->open) return;
+        const bool taken = pool_.submit([this, id, now, found, film = std::move(film)] {
+          make_all(id, now, found, film.get());
+        });
+        if (!taken) {
+          end(id, [](const Asked&, const Askers&) { return error_reply(crowded()); });
+        }
+      });
   if (status.ok()) return;
+  if (lacks_room(status) && put_back(id, {})) return;
   // Done meanwhile: those who ask again get the finished picture.
   if (status.error_code() == grpc::StatusCode::FAILED_PRECONDITION) {
     status = farm::retry_later(grpc::StatusCode::UNAVAILABLE, "the frame is being finished",
@@ -255,8 +324,24 @@ void PicturesApi::take_film(FrameId id) {
   end(id, [&](const Asked&, const Askers&) { return error_reply(status); });
 }
 
-void PicturesApi::make_all(FrameId id, const FrameNow& now, const grpc::Status& found,
+/// Makes what is wanted of a finished frame by now. What finds no memory waits until nothing else
+/// is in work, together with what was not made yet.
+void PicturesApi::take_files(JobAndFrame id, const FrameNow& now) {
+  Wanted wanted = take_wanted(id);
+  while (!wanted.empty()) {
+    const auto& [asked, askers] = *wanted.begin();
+    const WebReply made =
+        is_closed() ? closing() : reply_in_memory([&] { return of_file(asked, askers, now); });
+    if (made.status == 503 && put_back(id, wanted)) break;
+    for (const Asker& asker : askers) asker.answer(made);
+    wanted.erase(wanted.begin());
+  }
+  leave(id);
+}
+
+void PicturesApi::make_all(JobAndFrame id, const FrameNow& now, const grpc::Status& found,
                            const core::Film* film) {
+  if (lacks_room(found) && put_back(id, {})) return leave(id);
   Shot shot;
   const grpc::Status made = !found.ok() ? found : within_memory([&] {
     shot.image = film->normalised();
@@ -264,6 +349,7 @@ void PicturesApi::make_all(FrameId id, const FrameNow& now, const grpc::Status& 
     return grpc::Status::OK;
   });
   end(id, [&](const Asked& asked, const Askers& askers) {
+    if (is_closed()) return closing();
     if (!made.ok()) return error_reply(made);
     const auto has_some = [&](const Asker& asker) { return has_room(asker.owner); };
     const auto who = std::find_if(askers.begin(), askers.end(), has_some);
@@ -309,26 +395,34 @@ void PicturesApi::count(WebReply& reply, const farm::ByteBudget::Owner& owner) c
   reply.text = std::shared_ptr<const std::string>(counted, counted->text.get());
 }
 
+/// What is wanted of the frame by now; what is asked for from now on comes after it.
+PicturesApi::Wanted PicturesApi::take_wanted(JobAndFrame id) {
+  const core::MutexLock lock(mutex_);
+  auto wanted = wanted_.extract(id);
+  return wanted ? std::move(wanted.mapped()) : Wanted();
+}
+
 /// Everybody who waits for pictures of the frame gets them.
-void PicturesApi::end(FrameId id,
+void PicturesApi::end(JobAndFrame id,
                       const std::function<WebReply(const Asked&, const Askers&)>& reply) {
-  Wanted wanted;
-  {
-    const core::MutexLock lock(mutex_);
-    wanted = std::move(wanted_[id]);
-    wanted_.erase(id);
-  }
-  for (const auto& [asked, askers] : wanted) {
+  for (const auto& [asked, askers] : take_wanted(id)) {
     const WebReply made = reply(asked, askers);
     for (const Asker& asker : askers) asker.answer(made);
   }
+  leave(id);
+}
+
+/// The frame is not in work any more: counts what it has taken, and the next begins.
+void PicturesApi::leave(JobAndFrame id) {
   {
     const core::MutexLock lock(mutex_);
-    const auto over = in_work_.extract(id);
-    const InWork& work = over.mapped();
-    const Clock::time_point now = Clock::now();
-    if (!work.owner.empty())
-      shares_.use(work.owner, std::chrono::duration<double>(now - work.since).count(), now);
+    if (const auto over = in_work_.extract(id)) {
+      const InWork& work = over.mapped();
+      const Clock::time_point now = Clock::now();
+      if (!work.owner.empty()) {
+        shares_.use(work.owner, std::chrono::duration<double>(now - work.since).count(), now);
+      }
+    }
   }
   (void)pool_.submit([this] { begin_some(); });
 }

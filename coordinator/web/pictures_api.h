@@ -23,16 +23,17 @@
 namespace hyades::coordinator {
 
 /// Frames as they are now: of the film in mid-render, of a finished file afterwards. What was made
-/// once is kept for all who ask. A film is copied for all that is asked of its frame together, at
-/// most once a second, and two films at a time, for different callers: next is for whom lately
-/// least time was spent. Pictures that somebody takes his time to read count until he has them, and
+/// once is kept for all who ask. What is asked of a frame is made together, of one copy of its film
+/// at most once a second, and of two frames at a time, for different callers: next is for whom
+/// lately least time was spent. A frame for which there is no memory beside the other one is next
+/// when that is over. Pictures that somebody takes his time to read count until he has them, and
 /// where they are too many no more are made.
 class PicturesApi {
  public:
   /// Of all pictures together, kept or on their way, and of those that were made for one caller.
   static constexpr uint64_t kMostBytes = uint64_t{512} << 20U;
   static constexpr uint64_t kMostBytesOfOne = kMostBytes / 2;
-  /// Different ones of one frame that wait for its film, and of those that one caller waits for.
+  /// Different ones of one frame that wait, and of those that one caller waits for.
   static constexpr size_t kMostOfFrame = 32;
   static constexpr size_t kMostOfFrameOfOne = 8;
 
@@ -46,8 +47,8 @@ class PicturesApi {
   PicturesApi& operator=(const PicturesApi&) = delete;
 
   void add_routes(Router& router);
-  /// Drops the films that come from now on. To be called before the destructor, which waits for the
-  /// threads that make pictures.
+  /// Makes no more pictures, but for those that are being made. To be called before the destructor,
+  /// which waits for the threads that make them.
   void close();
 
   /// A picture that somebody asks for.
@@ -78,9 +79,9 @@ class PicturesApi {
     Answer answer;
   };
   using Askers = std::vector<Asker>;
-  /// The pictures that are wanted of a frame in work, and who waits for them.
+  /// The pictures that are wanted of a frame, and who waits for them.
   using Wanted = std::map<Asked, Askers>;
-  using FrameId = std::pair<uint64_t, int32_t>;
+  using JobAndFrame = std::pair<uint64_t, int32_t>;
   /// Films come by threads that may outlive this.
   struct Gate {
     core::Mutex mutex;
@@ -88,16 +89,24 @@ class PicturesApi {
   };
 
   void answer_picture(const Asked& asked, const Asker& asker);
-  WebReply of_file(const Asked& asked, const farm::ByteBudget::Owner& owner, const FrameNow& now);
+  core::Result<std::optional<StoredOutput>> best_file(const Asked& asked);
+  WebReply of_file(const Asked& asked, const Askers& askers, const FrameNow& now);
+  bool is_closed() const;
   void want(const Asked& asked, const Asker& asker);
   bool enqueue(const Asked& asked, const Asker& asker);
   bool may_wait(const std::string& owner) const HYADES_REQUIRES(mutex_);
-  std::optional<FrameId> begin_next() HYADES_EXCLUDES(mutex_);
+  std::optional<JobAndFrame> begin_next() HYADES_EXCLUDES(mutex_);
   static bool may_want(const Wanted& wanted, const Asked& asked, const std::string& owner);
   void begin_some();
-  void take_film(FrameId id);
-  void make_all(FrameId id, const FrameNow& now, const grpc::Status& found, const core::Film* film);
-  void end(FrameId id, const std::function<WebReply(const Asked&, const Askers&)>& reply);
+  void take(JobAndFrame id);
+  void take_film(JobAndFrame id, const FrameNow& now);
+  void take_files(JobAndFrame id, const FrameNow& now);
+  Wanted take_wanted(JobAndFrame id) HYADES_EXCLUDES(mutex_);
+  bool put_back(JobAndFrame id, const Wanted& left) HYADES_EXCLUDES(mutex_);
+  void make_all(JobAndFrame id, const FrameNow& now, const grpc::Status& found,
+                const core::Film* film);
+  void end(JobAndFrame id, const std::function<WebReply(const Asked&, const Askers&)>& reply);
+  void leave(JobAndFrame id);
   bool has_room(const farm::ByteBudget::Owner& owner);
   void count(WebReply& reply, const farm::ByteBudget::Owner& owner) const;
   std::optional<WebReply> find(const Asked& asked, const std::string& tag, bool over);
@@ -111,15 +120,17 @@ class PicturesApi {
   Kept kept_ HYADES_GUARDED_BY(mutex_);  ///< what was asked for last is in front
   std::map<Asked, Kept::iterator> index_ HYADES_GUARDED_BY(mutex_);
   size_t kept_bytes_ HYADES_GUARDED_BY(mutex_) = 0;
-  std::map<FrameId, Wanted> wanted_ HYADES_GUARDED_BY(mutex_);
-  /// Frames whose films nobody fetches yet, and who has asked for them first.
-  std::deque<std::pair<FrameId, std::string>> queue_ HYADES_GUARDED_BY(mutex_);
+  std::map<JobAndFrame, Wanted> wanted_ HYADES_GUARDED_BY(mutex_);
+  /// Frames whose turn has not come, and who has asked for them first.
+  std::deque<std::pair<JobAndFrame, std::string>> queue_ HYADES_GUARDED_BY(mutex_);
+  /// The frame for which there was no memory beside another: nothing else is begun before it.
+  std::optional<std::pair<JobAndFrame, std::string>> alone_ HYADES_GUARDED_BY(mutex_);
   struct InWork {
     std::string owner;
     Clock::time_point since;
   };
-  /// Those whose films are being fetched or shown.
-  std::map<FrameId, InWork> in_work_ HYADES_GUARDED_BY(mutex_);
+  /// Those whose films or files are being read or shown.
+  std::map<JobAndFrame, InWork> in_work_ HYADES_GUARDED_BY(mutex_);
   farm::FairShares shares_ HYADES_GUARDED_BY(mutex_);  ///< seconds of films in work, of callers
   farm::ThreadPool pool_{2, 1000, 1};  ///< ends first: its threads use all of the above
 };

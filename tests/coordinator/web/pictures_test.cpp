@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <atomic>
 #include <future>
 #include <memory>
 #include <mutex>
@@ -201,6 +202,52 @@ TEST_F(UnreadPictures, OneCallerWaitsForOneFilmAtATime) {
   ASSERT_TRUE(served) << "ada's films were all that were waited for";
   EXPECT_EQ(bob.get(), 200U);
   for (std::promise<unsigned>& ada : adas) EXPECT_EQ(ada.get_future().get(), 200U);
+}
+
+/// There is memory for one picture at a time: who asks without end takes turns with who asks once.
+TEST_F(UnreadPictures, WhoAsksInALoopKeepsNobodyFromFinishedOnes) {
+  world_.farm.options.film_memory = 600'000;
+  start(true);
+  std::atomic<bool> stop{false};
+  std::atomic<int> shown{0};
+  std::vector<std::thread> adas;
+  for (int i = 0; i < 4; ++i) {
+    adas.emplace_back([&, i] {
+      for (int width = 16 + i; !stop; width = width < 76 ? width + 4 : 16 + i) {
+        if (answer_to("ada", width).status == 200) ++shown;
+      }
+    });
+  }
+  for (int width = 17; width < 77; width += 2) {
+    EXPECT_EQ(answer_to("bob", width).status, 200) << width;
+  }
+  EXPECT_TRUE(eventually([&] { return shown > 10; }));
+  stop = true;
+  for (std::thread& ada : adas) ada.join();
+}
+
+/// What nobody has begun with is not made any more once the coordinator ends.
+TEST_F(UnreadPictures, AnEndWaitsForNoneThatOnlyWait) {
+  start(true);
+  std::promise<void> begun;
+  std::promise<void> go;
+  const std::shared_future<void> gone(go.get_future());
+  ask("ada", 20, [&](const WebReply&) {
+    begun.set_value();
+    gone.wait();
+  });
+  begun.get_future().wait();
+  std::atomic<int> made{0};
+  std::atomic<int> refused{0};
+  for (int i = 0; i < 100; ++i) {
+    ask("ada", 21 + i % 8,
+        [&](const WebReply& reply) { ++(reply.status == 200 ? made : refused); });
+  }
+  api_->close();
+  go.set_value();
+  api_.reset();
+  EXPECT_EQ(made, 0);
+  EXPECT_EQ(refused, 100);
 }
 
 /// Who asks while pictures of the same film are being sent comes after them.
