@@ -269,6 +269,8 @@ bool JobQueries::changes_of_open(uint64_t id, ChangeCursor& cursor, v1::WatchEve
       cursor.version = it->first;
     }
     event.set_more(it != active->changed.end());
+    // What has changed of the job alone, such as what it waits for, is told with these.
+    if (!event.more()) cursor.version = active->version;
     return true;
   }
   if (!cursor.after) cursor.first_version = active->version;

@@ -109,6 +109,31 @@ TEST(Live, WhoHeardOfAJobBeforeItWasOpenedAgainHearsAllOfIt) {
   EXPECT_EQ(frames_told(), 3U);
 }
 
+// What is in its way, and that somebody has paused it, changes no frame.
+TEST(Live, WhoWatchesAJobHearsWhatChangesOfItAlone) {
+  WebWorld world;
+  world.start();
+  const uint64_t job = world.farm.submit(2);
+  v1::WatchRequest asked;
+  asked.set_job(job);
+  const auto context = world.farm.context();
+  const auto watch = world.farm.jobs->Watch(context.get(), asked);
+  v1::WatchEvent event;
+  const auto hears = [&](const auto& what) {
+    while (watch->Read(&event)) {
+      if (what(event.job())) return true;
+    }
+    return false;
+  };
+  EXPECT_TRUE(hears([](const v1::Job& told) { return !told.reason().empty(); })) << "no worker";
+  v1::JobRequest about;
+  about.set_job(job);
+  v1::JobResponse paused;
+  ASSERT_TRUE(world.farm.jobs->Pause(world.farm.context().get(), about, &paused).ok());
+  EXPECT_TRUE(hears([](const v1::Job& told) { return told.state() == v1::JOB_STATE_PAUSED; }));
+  context->TryCancel();
+}
+
 TEST(Live, WhoReadsAJobThatIsDeletedIsToldSo) {
   WebWorld world;
   world.start();
