@@ -18,14 +18,12 @@
 #include "core/base/hash.h"
 #include "core/base/leftovers.h"
 #include "core/base/printable.h"
-#include "core/base/version.h"
 #include "core/film/black.h"
 #include "core/film/film_exr.h"
 #include "core/finish/frame_outputs.h"
 #include "core/finish/picture.h"
 #include "core/job/film_file.h"
 #include "core/job/layers.h"
-#include "core/job/noise_threshold.h"
 #include "core/job/output_path.h"
 #include "core/job/render_key.h"
 #include "core/render/class_probe.h"
@@ -306,18 +304,8 @@ std::string JobFrames::film_path(int32_t frame) const {
 }
 
 core::FilmInfo JobFrames::film_info(int32_t frame) const {
-  const core::Job& job = loaded_.job;
-  core::FilmInfo info;
-  info.job_name = job.name;
-  info.render_key = core::render_key(job, frame, assets_);
-  info.frame = frame;
-  info.width = job.film.width;
-  info.height = job.film.height;
-  info.crop = core::render_window(job.film);
-  info.samples = job.sampling.samples;
-  info.aim = core::noise_threshold(job).aim;
+  core::FilmInfo info = core::film_info(loaded_.job, frame, assets_);
   info.worker_class = machine_class();
-  info.build = fmt::format("hyades {}, renderer {}", core::kVersion, core::kRendererRevision);
   return info;
 }
 

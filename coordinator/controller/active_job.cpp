@@ -12,11 +12,10 @@
 #include "coordinator/scheduler/frame_ledger.h"
 #include "coordinator/scheduler/tile_grid.h"
 #include "core/base/text.h"
-#include "core/base/version.h"
+#include "core/base/wall_clock.h"
 #include "core/job/layers.h"
 #include "core/job/noise_threshold.h"
 #include "core/job/ocio_files.h"
-#include "core/job/render_key.h"
 #include "core/job/video.h"
 #include "farm/manifest_resolver.h"
 #include "farm/wire.h"
@@ -306,21 +305,6 @@ v1::Frame ActiveJob::describe_frame(int32_t number, const FrameNote& note) const
   if (note.noise) wire.set_noise(*note.noise);
   wire.set_black(black.contains(number));
   return wire;
-}
-
-core::FilmInfo film_info(const farm::ReadJob& read, int32_t frame) {
-  const core::Job& job = read.job;
-  core::FilmInfo info;
-  info.job_name = job.name;
-  info.render_key = core::render_key(job, frame, read.assets);
-  info.frame = frame;
-  info.width = job.film.width;
-  info.height = job.film.height;
-  info.crop = core::render_window(job.film);
-  info.samples = job.sampling.samples;
-  info.aim = core::noise_threshold(job).aim;
-  info.build = fmt::format("hyades {}, renderer {}", core::kVersion, core::kRendererRevision);
-  return info;
 }
 
 uint64_t memory_of(const StoredJob& job) { return kJobBytes + job.spec.size(); }

@@ -172,9 +172,6 @@ struct ActiveJob {
   static uint64_t next_life();
 };
 
-/// What the film of a frame of the job is. Takes its time: it hashes all that the job says.
-core::FilmInfo film_info(const farm::ReadJob& read, int32_t frame);
-
 /// Pixels along the side of a job's tiles, by its crop window and samples per pixel. Every unit
 /// costs the farm some milliseconds, and none is larger than a tile with all its samples: 64 where
 /// these are few, if the frame is still cut into enough pieces for many threads; else 32, as where

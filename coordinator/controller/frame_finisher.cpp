@@ -157,7 +157,7 @@ std::shared_ptr<const core::Film> FrameFinisher::begin(Completed& completed, std
 core::Result<FinishTask> FrameFinisher::task_of(const farm::ReadJob& read, uint64_t job,
                                                 const StoredFrame& over) const {
   FinishTask task;
-  task.info = film_info(read, over.frame);
+  task.info = core::film_info(read.job, over.frame, read.assets);
   task.info.worker_class = over.worker_class;
   task.outputs = read.job.outputs;
   if (read.job.keep_films) task.film = core::film_file(read.job);

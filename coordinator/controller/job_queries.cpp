@@ -17,6 +17,7 @@
 #include "core/base/text.h"
 #include "core/film/film_exr.h"
 #include "core/image/read_image.h"
+#include "core/job/film_file.h"
 #include "core/job/output_path.h"
 #include "core/job/video.h"
 #include "farm/wire.h"
@@ -404,7 +405,7 @@ grpc::Status JobQueries::film(uint64_t id, int32_t frame, const std::string& ask
   auto document = context_.documents.read_stored(spec, kReadingPatience, asker);
   if (!document) return others_are_read();
   if (!*document) return {grpc::StatusCode::DATA_LOSS, document->error().message};
-  core::FilmInfo info = film_info(***document, frame);
+  core::FilmInfo info = core::film_info((**document)->job, frame, (**document)->assets);
   document.reset();  // others may be read
   return copy_film(id, frame, std::move(info), std::move(then));
 }
