@@ -282,7 +282,11 @@ v1::Job ActiveJob::describe(uint32_t leased) const {
   // Frames are finished beside the rendering, one after the other: that may be what takes longest.
   if (finish_seconds > 0 && (finishing > 0 || wire.seconds_left() >= 0)) {
     const uint32_t over = stored.frames_done + stored.frames_failed;
-    const double to_finish = finish_seconds * (stored.frames - std::min(over, stored.frames));
+    double to_finish = finish_seconds * (stored.frames - std::min(over, stored.frames));
+    if (finishing_since > 0) {
+      const double had = 1e-6 * static_cast<double>(core::wall_us() - finishing_since);
+      to_finish -= std::clamp(had, 0.0, finish_seconds);
+    }
     wire.set_seconds_left(std::max(wire.seconds_left(), to_finish));
   }
   wire.set_waiting(is_waiting(leased));

@@ -114,6 +114,8 @@ struct ActiveJob {
   Speed speed HYADES_GUARDED_BY(state_lock);
   /// How long the outputs of a frame lately took to be made [seconds]; 0: not known.
   double finish_seconds HYADES_GUARDED_BY(state_lock) = 0;
+  /// When the outputs of the frame that is being finished were begun [wall clock, us]; 0: none is.
+  int64_t finishing_since HYADES_GUARDED_BY(state_lock) = 0;
   /// Since when it has been worked on without a pause that is not in stored.busy_ns; none: nobody
   /// works on it.
   TimePoint busy_since HYADES_GUARDED_BY(state_lock);

@@ -99,6 +99,7 @@ bool FrameFinisher::finish(Completed& completed) {
   // What is written and cannot be stored is no fault of the frame's, nor is a full disk.
   const bool waits = !done && (written || disk_.is_short_for(*film));
   Turn turn(dispatcher_);
+  if (ActiveJob* still = jobs_.find(completed.job); still != nullptr) still->finishing_since = 0;
   if (in_work->stop() && !written) return true;
   if (waits) {
     ActiveJob* still = jobs_.find(completed.job);
@@ -147,6 +148,7 @@ std::shared_ptr<const core::Film> FrameFinisher::begin(Completed& completed, std
   }
   spec = active->stored.spec;
   owner = active->stored.owner;
+  active->finishing_since = core::wall_us();
   const FrameNote& note = active->frames[completed.frame];
   over = {completed.frame,    true, {}, note.worker_class, note.restarts, completed.parts,
           jobs_.next_moment()};
