@@ -165,8 +165,7 @@ Progress LocalRun::progress() const {
     }
   }
   if (const std::string trouble = film_store_.trouble(); !trouble.empty()) {
-    p.trouble = fmt::format("waits for the disk: {} ({} of films wait)", reason_of(trouble),
-                            core::format_bytes(film_store_.waiting_bytes()));
+    p.trouble = "waits for the disk: " + reason_of(trouble);
   }
   return p;
 }

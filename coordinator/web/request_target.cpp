@@ -1,35 +1,19 @@
 #include "coordinator/web/request_target.h"
 
+#include <algorithm>
 #include <cstddef>
 #include <utility>
+
+#include "core/base/text.h"
 
 namespace hyades::coordinator {
 namespace {
 
-int hex_digit(char c) {
-  if (c >= '0' && c <= '9') return c - '0';
-  if (c >= 'a' && c <= 'f') return c - 'a' + 10;
-  if (c >= 'A' && c <= 'F') return c - 'A' + 10;
-  return -1;
-}
-
-std::optional<std::string> decode(std::string_view text, bool plus_is_space) {
-  std::string decoded;
-  for (size_t i = 0; i < text.size(); ++i) {
-    if (text[i] == '+' && plus_is_space) {
-      decoded += ' ';
-    } else if (text[i] != '%') {
-      decoded += text[i];
-    } else {
-      if (i + 2 >= text.size()) return std::nullopt;
-      const int high = hex_digit(text[i + 1]);
-      const int low = hex_digit(text[i + 2]);
-      if (high < 0 || low < 0) return std::nullopt;
-      decoded += static_cast<char>(high * 16 + low);
-      i += 2;
-    }
-  }
-  return decoded;
+/// Of what forms send, where a plus is a space.
+std::optional<std::string> decode_form(std::string_view text) {
+  std::string spaced(text);
+  std::replace(spaced.begin(), spaced.end(), '+', ' ');
+  return core::percent_decoded(spaced);
 }
 
 /// The text up to `end`, which is taken off together with it.
@@ -54,14 +38,14 @@ std::optional<Target> parse_target(std::string_view text) {
   while (!path.empty()) {
     const std::string_view part = take_until(path, '/');
     if (part.empty()) continue;
-    auto name = decode(part, false);
+    auto name = core::percent_decoded(part);
     if (!name || !is_name(*name)) return std::nullopt;
     target.path.push_back(std::move(*name));
   }
   while (!query.empty()) {
     std::string_view value = take_until(query, '&');
-    const auto name = decode(take_until(value, '='), true);
-    auto decoded = decode(value, true);
+    const auto name = decode_form(take_until(value, '='));
+    auto decoded = decode_form(value);
     if (!name || !decoded) return std::nullopt;
     if (!name->empty()) target.query[*name] = std::move(*decoded);
   }

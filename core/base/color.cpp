@@ -6,6 +6,7 @@
 #include <string>
 
 #include "core/base/elementary.h"
+#include "core/base/text.h"
 
 namespace hyades::core {
 namespace {
@@ -26,13 +27,6 @@ Vec3d color_matching(float nm) {
                  0.286F * lobe(nm, 530.9F, 0.0613F, 0.0322F)},
           double{1.217F * lobe(nm, 437.0F, 0.0845F, 0.0278F) +
                  0.681F * lobe(nm, 459.0F, 0.0385F, 0.0725F)}};
-}
-
-int hex_digit(char c) {
-  if (c >= '0' && c <= '9') return c - '0';
-  if (c >= 'a' && c <= 'f') return c - 'a' + 10;
-  if (c >= 'A' && c <= 'F') return c - 'A' + 10;
-  return -1;
 }
 
 }  // namespace

@@ -20,6 +20,15 @@ constexpr double kLeastNoise = 1e-6;
 
 char small(char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; }
 
+/// "rotate_y" as "rotatey".
+std::string without_joints(std::string_view name) {
+  std::string left;
+  for (const char c : name) {
+    if (c != '_' && c != '-') left += small(c);
+  }
+  return left;
+}
+
 char folded(char c) { return c == '_' ? '-' : small(c); }
 
 }  // namespace
@@ -53,6 +62,7 @@ std::optional<std::string> closest_name(std::string_view name,
   for (const std::string& candidate : candidates) {
     if (candidate.empty() || candidate.size() > kLongestName) continue;
     const size_t allowed = std::max<size_t>(1, std::max(name.size(), candidate.size()) / 3);
+    if (without_joints(candidate) == without_joints(name)) return candidate;
     const size_t distance = edit_distance(name, candidate);
     // A single letter is not a misspelling of another one.
     const bool near = distance <= allowed && distance < std::max(name.size(), candidate.size());
@@ -79,6 +89,29 @@ std::string lower_case(std::string_view text) {
 bool is_letter_or_digit(char c) {
   const char letter = small(c);
   return (letter >= 'a' && letter <= 'z') || (c >= '0' && c <= '9');
+}
+
+int hex_digit(char c) {
+  if (c >= '0' && c <= '9') return c - '0';
+  const char letter = small(c);
+  return letter >= 'a' && letter <= 'f' ? letter - 'a' + 10 : -1;
+}
+
+std::optional<std::string> percent_decoded(std::string_view text) {
+  std::string decoded;
+  for (size_t i = 0; i < text.size(); ++i) {
+    if (text[i] != '%') {
+      decoded += text[i];
+      continue;
+    }
+    if (i + 2 >= text.size()) return std::nullopt;
+    const int high = hex_digit(text[i + 1]);
+    const int low = hex_digit(text[i + 2]);
+    if (high < 0 || low < 0) return std::nullopt;
+    decoded += static_cast<char>(high * 16 + low);
+    i += 2;
+  }
+  return decoded;
 }
 
 std::string join_names(std::span<const std::string> names) {

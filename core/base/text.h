@@ -27,6 +27,13 @@ std::string lower_case(std::string_view text);
 /// Whether `c` is one of a to z, A to Z and 0 to 9.
 bool is_letter_or_digit(char c);
 
+/// The value of a hexadecimal digit of either case; -1 of other characters.
+int hex_digit(char c);
+
+/// `text` with the bytes that each %XX stands for in its place (RFC 3986, section 2.1). Nothing
+/// where a % is followed by something else.
+std::optional<std::string> percent_decoded(std::string_view text);
+
 /// `text` as a word of a shell's command line, in quotes where it needs them: "job.yaml",
 /// "'my job.yaml'".
 std::string shell_word(const std::string& text);

@@ -104,8 +104,13 @@ bool read_quaternion(const ValueSite& site, const YamlNode& node, Animated<Vec4>
 }
 
 /// What helps where a number was written as others have it: as a text, or with its unit.
-std::string hint_for_number(const YamlNode& found) {
+std::string hint_for_number(const YamlNode& found, const std::string& expected) {
   double number = 0.0;
+  const bool computes = found.scalar.find_first_of("*+/()") != std::string::npos &&
+                        std::any_of(found.scalar.begin(), found.scalar.end(), [](char c) {
+                          return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z');
+                        });
+  if (computes && expected.starts_with("a number")) return " (an expression begins with '=')";
   if (found.quoted) return parse_number(found.scalar, number) ? " (without quotes)" : "";
   const std::string_view text = found.scalar;
   const size_t end = text.find_last_of("0123456789.") + 1;
@@ -115,6 +120,7 @@ std::string hint_for_number(const YamlNode& found) {
     if (text.substr(unit) == length)
       return " (without a unit: 'units' of the job is that of lengths)";
   }
+  if (text.substr(unit) == "W") return " (without a unit: powers are in watts)";
   for (const char* angle : {"deg", "°"}) {
     if (text.substr(unit) == angle) return " (without a unit: angles are in degrees)";
   }
@@ -124,7 +130,7 @@ std::string hint_for_number(const YamlNode& found) {
 }  // namespace
 
 void complain_mismatch(const ValueSite& site, const YamlNode& found, const std::string& expected) {
-  const std::string hint = hint_for_number(found);
+  const std::string hint = hint_for_number(found, expected);
   site.context.complain(found.where,
                         site.label + " is " + describe(found) + ", expected " + expected + hint);
 }

@@ -7,6 +7,7 @@
 #include <memory>
 #include <vector>
 
+#include "core/base/text.h"
 #include "import/within_folder.h"
 
 namespace hyades::core {
@@ -23,13 +24,6 @@ std::array<int, 256> make_values() {
     values[static_cast<unsigned char>(kAlphabet[i])] = static_cast<int>(i);
   }
   return values;
-}
-
-int hex_digit(char c) {
-  if (c >= '0' && c <= '9') return c - '0';
-  if (c >= 'a' && c <= 'f') return c - 'a' + 10;
-  if (c >= 'A' && c <= 'F') return c - 'A' + 10;
-  return -1;
 }
 
 std::string shown(std::string_view uri) {
@@ -71,16 +65,7 @@ Result<Bytes> decode_data_uri(std::string_view uri) {
 }
 
 Result<std::string> decode_file_uri(std::string_view uri) {
-  std::string path;
-  for (size_t i = 0; i < uri.size(); ++i) {
-    if (uri[i] == '%' && i + 2 < uri.size() && hex_digit(uri[i + 1]) >= 0 &&
-        hex_digit(uri[i + 2]) >= 0) {
-      path += static_cast<char>(hex_digit(uri[i + 1]) * 16 + hex_digit(uri[i + 2]));
-      i += 2;
-    } else {
-      path += uri[i];
-    }
-  }
+  std::string path = percent_decoded(uri).value_or(std::string(uri));
   std::replace(path.begin(), path.end(), '\\', '/');
   return within_folder(path);
 }

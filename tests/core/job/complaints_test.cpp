@@ -65,6 +65,9 @@ TEST(Complaints, WrongTypesSayWhatWasFoundAndExpected) {
   EXPECT_EQ(complaints("camera: {fov: \"35\"}\n"),
             "job.yaml:2:15: fov is the text \"35\", expected a number above 0 and below 180 "
             "(without quotes)\n");
+  EXPECT_EQ(complaints("camera: {fov: 30 * t}\n"),
+            "job.yaml:2:15: fov is '30 * t', expected a number above 0 and below 180 (an "
+            "expression begins with '=')\n");
   EXPECT_EQ(
       complaints("objects: {a: {shape: sphere, radius: 10cm}}\n"),
       "job.yaml:2:38: radius is '10cm', expected a number above 0 (without a unit: 'units' of "
