@@ -1,6 +1,5 @@
 #include "cli/media_swatch.h"
 
-#include <chrono>
 #include <cstddef>
 #include <filesystem>
 #include <span>
@@ -71,20 +70,11 @@ core::Status render_swatch(const std::vector<KnownMedium>& media, const SwatchOp
   const core::FrameRenderer renderer(*scene, job, 1, core::needed_layers(job));
   core::RenderFrameOptions how;
   how.threads = options.threads;
-  StatusLine line;
-  const auto begun = StatusLine::Clock::now();
-  how.progress = [&](double share) {
-    if (options.quiet || !line.is_due()) return;
-    const std::string bar = line.redraws() ? progress_bar(share) + "  " : "";
-    const std::chrono::duration<double> gone = StatusLine::Clock::now() - begun;
-    const std::string left =
-        share > 0.0 ? "  " + core::format_time_left(gone.count() * (1.0 - share) / share) + " left"
-                    : "";
-    line.show(fmt::format("{}{:3.0f} %{}", bar, 100.0 * share, left));
-  };
+  ShareDone done(options.quiet);
+  how.progress = [&](double share) { done.show(share); };
   const auto frame =
       core::render_frame(renderer, core::render_window(job.film), job.sampling.samples, 1, how);
-  line.clear();
+  done.clear();
   const std::filesystem::path path(options.file);
   job.outputs.front().file = path.filename().string();
   const std::string folder = path.has_parent_path() ? path.parent_path().string() : ".";

@@ -4,10 +4,16 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cstdio>
 #include <cstdlib>
+#include <string>
 #include <string_view>
 #include <utility>
+
+#include <fmt/format.h>
+
+#include "core/base/text.h"
 
 namespace hyades::cli {
 namespace {
@@ -100,6 +106,16 @@ void StatusLine::show(const std::string& text) {
 void StatusLine::clear() {
   if (drawn_) std::fprintf(stderr, "\r\033[K");
   drawn_ = false;
+}
+
+void ShareDone::show(double share) {
+  if (quiet_ || !line_.is_due()) return;
+  const std::string bar = line_.redraws() ? progress_bar(share) + "  " : "";
+  const std::chrono::duration<double> gone = StatusLine::Clock::now() - begun_;
+  const std::string left =
+      share > 0.0 ? "  " + core::format_time_left(gone.count() * (1.0 - share) / share) + " left"
+                  : "";
+  line_.show(fmt::format("{}{:3.0f} %{}", bar, 100.0 * share, left));
 }
 
 }  // namespace hyades::cli

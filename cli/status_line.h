@@ -43,4 +43,21 @@ class StatusLine {
   Clock::time_point last_;
 };
 
+/// How much of some work is done and how long the rest will take, in a StatusLine that is as long
+/// there as this is; nothing where `quiet`.
+class ShareDone {
+ public:
+  explicit ShareDone(bool quiet) : quiet_(quiet) {}
+
+  /// `share`: 0 to 1.
+  void show(double share);
+  /// Removes the line, so that other text can be written.
+  void clear() { line_.clear(); }
+
+ private:
+  bool quiet_;
+  StatusLine line_;
+  StatusLine::Clock::time_point begun_ = StatusLine::Clock::now();
+};
+
 }  // namespace hyades::cli

@@ -1,5 +1,6 @@
 #include <cstdint>
 #include <cstdio>
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -8,10 +9,12 @@
 #include <CLI/CLI.hpp>
 
 #include "cli/command_line.h"
+#include "cli/film_size_option.h"
 #include "cli/load_job.h"
 #include "cli/number_range.h"
 #include "cli/own_files.h"
 #include "cli/scene_options.h"
+#include "cli/status_line.h"
 #include "cli/written_file.h"
 #include "core/base/folder_links.h"
 #include "core/base/parallel.h"
@@ -28,7 +31,12 @@ struct StrategiesOptions {
   int threads = core::hardware_threads();
   std::string output = ".";
   bool overwrite = false;
+  bool quiet = false;
+  FilmSizeOption size;
 };
+
+/// Strategies of up to `events` scattering events, each weighted and not.
+int pictures_of(int events) { return events * (events + 5); }
 
 core::Status may_write(const StrategiesOptions& options, const std::string& name,
                        const std::string& job) {
@@ -43,7 +51,8 @@ core::Status may_write(const StrategiesOptions& options, const std::string& name
 /// Renders what strategy (s, t) brings to the picture, and writes it. False (and a message) where
 /// that fails.
 bool write_strategy(const std::shared_ptr<const core::Scene>& scene, core::Job job,
-                    const StrategiesOptions& options, int s, int t, bool weighted) {
+                    const StrategiesOptions& options, int s, int t, bool weighted,
+                    const std::function<double(double share)>& of_all, ShareDone& done) {
   job.integrator.light_vertices = s;
   job.integrator.camera_vertices = t;
   job.integrator.min_events = job.integrator.max_depth = s + t - 2;
@@ -57,9 +66,9 @@ bool write_strategy(const std::shared_ptr<const core::Scene>& scene, core::Job j
     return false;
   }
   const core::FrameRenderer renderer(scene, job, options.frame, layers);
-  const core::RenderedFrame rendered =
-      core::render_frame(renderer, core::render_window(job.film), job.sampling.samples,
-                         options.frame, {.threads = options.threads});
+  const core::RenderedFrame rendered = core::render_frame(
+      renderer, core::render_window(job.film), job.sampling.samples, options.frame,
+      {.threads = options.threads, .progress = [&](double share) { done.show(of_all(share)); }});
   core::OutputDesc exr;
   exr.file = name + ".exr";
   exr.layers = {"beauty", "variance"};
@@ -75,6 +84,7 @@ bool write_strategy(const std::shared_ptr<const core::Scene>& scene, core::Job j
   const core::OutputDesc outputs[] = {exr, png};
   const auto written = core::write_outputs(outputs, options.output, info, rendered.film);
   if (!written) print_error(written.error());
+  done.clear();
   for (size_t i = 0; written && i < written->size(); ++i)
     std::printf("wrote %s\n", (*written)[i].c_str());
   return static_cast<bool>(written);
@@ -102,10 +112,12 @@ int strategies_command(int argc, char** argv) {
       ->capture_default_str();
   app.add_option("--samples", samples, "per pixel (default: the job's)")
       ->check(in_range(1U, 16'777'216U));
+  declare_film_size(app, options.size);
   app.add_option("--threads", options.threads, "rendering threads")->check(in_range(1, 1024));
   declare_output_folder(app, options.output, "folder for the pictures");
   app.add_flag("--overwrite", options.overwrite,
                "replace files that are there, whoever made them (default: those of this job)");
+  app.add_flag("-q,--quiet", options.quiet, "show no progress");
   app.footer(
       "examples:\n  hyades strategies jobs/cornell/job.yaml --events 2 --samples 64 --output "
       "parts\n"
@@ -123,6 +135,7 @@ int strategies_command(int argc, char** argv) {
     return kBadInput;
   }
   if (samples > 0) job.sampling.samples = samples;
+  resize_film(options.size, job.film);
   job.integrator.type = "bdpt";
   core::SceneCache cache(*loaded->assets);
   auto scene = core::build_scene(job, options.frame, cache);
@@ -132,10 +145,18 @@ int strategies_command(int argc, char** argv) {
   }
   for (const std::string& warning : (*scene)->warnings)
     std::fprintf(stderr, "warning: %s\n", warning.c_str());
+  ShareDone done(options.quiet);
+  int pictures = 0;
+  const auto of_all = [&](double share) {
+    return (pictures + share) / pictures_of(options.events);
+  };
   for (int events = 1; events <= options.events; ++events) {
     for (int s = 0; s <= events + 1; ++s) {
       for (const bool weighted : {true, false}) {
-        if (!write_strategy(*scene, job, options, s, events + 2 - s, weighted)) return 1;
+        if (!write_strategy(*scene, job, options, s, events + 2 - s, weighted, of_all, done)) {
+          return 1;
+        }
+        ++pictures;
       }
     }
   }
