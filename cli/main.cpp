@@ -30,7 +30,7 @@ struct Group {
 };
 
 const std::vector<Group>& groups() {
-#define HYADES_ROW(word, help) {#word, "hyades-client", help},
+#define HYADES_ROW(word, about, help) {#word, "hyades-client", help},
   static const std::vector<Group> all = {
       {"rendering",
        {{"new", "hyades-render", "write a job with comments, to start from"},
