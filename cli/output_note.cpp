@@ -36,7 +36,7 @@ OutputNote::OutputNote(std::string path, const LoadedJob& loaded) : path_(std::m
     settings +=
         fmt::format("{}|{}|{}|{}|{}|{}|{}|{}|{}\n", output.file, fmt::join(output.layers, ","),
                     output.tone_map, output.exposure, output.half, output.transparent,
-                    output.quality, output.denoise, output.bits);
+                    output.jpeg_quality, output.denoise, output.bits);
   }
   digest_ = core::to_hex(core::sha256(settings));
 }

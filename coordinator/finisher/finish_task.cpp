@@ -15,7 +15,7 @@ namespace hyades::core {
 
 // What a finisher is told of outputs and colours: each key once, for writing and for reading.
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(OutputDesc, file, layers, tone_map, exposure, denoise, half,
-                                   quality, bits, transparent)
+                                   jpeg_quality, bits, transparent)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(ColorDesc, config, display, view, look, working_space)
 
 }  // namespace hyades::core

@@ -16,9 +16,9 @@ std::vector<std::string> files_of(const VideoTask& task) {
 }
 
 core::Status write_video_task(const std::string& folder, const VideoTask& task) {
-  const Json json = {{"file", task.video.file},        {"pictures", task.video.pictures},
-                     {"quality", task.video.quality},  {"folder", task.frames.folder},
-                     {"numbers", task.frames.numbers}, {"rate", task.frames.rate}};
+  const Json json = {{"file", task.video.file},           {"pictures", task.video.pictures},
+                     {"quality", task.video.rate_factor}, {"folder", task.frames.folder},
+                     {"numbers", task.frames.numbers},    {"rate", task.frames.rate}};
   return write_json(folder + "/video.json", json);
 }
 
@@ -30,7 +30,7 @@ core::Result<VideoTask> read_video_task(const std::string& folder) {
     VideoTask task;
     task.video.file = json->at("file");
     task.video.pictures = json->at("pictures");
-    task.video.quality = json->at("quality");
+    task.video.rate_factor = json->at("quality");
     task.frames.folder = json->at("folder");
     task.frames.numbers = json->at("numbers").get<std::vector<int32_t>>();
     task.frames.rate = json->at("rate");

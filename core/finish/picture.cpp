@@ -76,7 +76,7 @@ Status write_encoded(PictureFormat format, const OutputDesc& output, const Image
   const CodeOptions codes{output.bits, tag_of(picture->transfer)};
   switch (format) {
     case PictureFormat::jpeg:
-      return write_jpeg(path, picture->image, output.quality, texts, codes.color);
+      return write_jpeg(path, picture->image, output.jpeg_quality, texts, codes.color);
     case PictureFormat::tiff:
       return write_tiff(path, picture->image, texts, codes);
     default:

@@ -119,7 +119,7 @@ std::vector<std::string> ffmpeg_arguments(const VideoDesc& video, const VideoFra
   const auto add = [&](std::initializer_list<std::string> more) {
     words.insert(words.end(), more.begin(), more.end());
   };
-  const std::string quality = std::to_string(video.quality);
+  const std::string quality = std::to_string(video.rate_factor);
   if (ending == ".webm") {
     add({"-c:v", "libvpx-vp9", "-crf", quality, "-b:v", "0", "-cpu-used", "2", "-row-mt", "1", "-f",
          "webm"});

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <span>
 #include <string>
 #include <utility>
@@ -57,27 +58,32 @@ void read_lossless(MapReader& reader, OutputDesc& output) {
 
 void read_jpeg(MapReader& reader, OutputDesc& output) {
   read_picture(reader, output);
-  reader.integer("quality", output.quality, 1, 100);
+  reader.integer("quality", output.jpeg_quality, 1, 100);
 }
 
-/// The range of x264's constant rate factor without 0, which needs a profile that few players have.
-void read_h264(MapReader& reader, OutputDesc& output) {
-  read_picture(reader, output);
-  output.quality = VideoDesc().quality;
-  reader.integer("quality", output.quality, 1, 51);
-}
+/// Constant rate factors of an encoder.
+struct RateFactors {
+  int32_t usual;
+  int32_t best;
+  int32_t worst;
+};
 
-void read_vp9(MapReader& reader, OutputDesc& output) {
-  read_picture(reader, output);
-  output.quality = 24;
-  reader.integer("quality", output.quality, 0, 63);
-}
+/// Without x264's 0, which needs a profile that few players have.
+constexpr RateFactors kH264{18, 1, 51};
+constexpr RateFactors kVp9{24, 0, 63};
 
 struct FormatRow {
   const char* extension;
   const char* section;
-  void (*read)(MapReader& reader, OutputDesc& output);
-  bool video = false;
+  void (*read)(MapReader& reader, OutputDesc& output);  ///< keys of what each frame leaves
+  const RateFactors* video = nullptr;                   ///< null: pictures only
+
+  void read_keys(MapReader& reader, OutputDesc& output, VideoDesc& made) const {
+    read(reader, output);
+    if (video == nullptr) return;
+    made.rate_factor = video->usual;
+    reader.integer("quality", made.rate_factor, video->best, video->worst);
+  }
 };
 
 const std::array<FormatRow, 9> kFormats = {{
@@ -87,21 +93,19 @@ const std::array<FormatRow, 9> kFormats = {{
     {".tiff", "outputs.tiff", read_lossless},
     {".jpg", "outputs.jpg", read_jpeg},
     {".jpeg", "outputs.jpg", read_jpeg},
-    {".mp4", "outputs.mp4", read_h264, true},
-    {".mov", "outputs.mp4", read_h264, true},
-    {".webm", "outputs.webm", read_vp9, true},
+    {".mp4", "outputs.mp4", read_picture, &kH264},
+    {".mov", "outputs.mp4", read_picture, &kH264},
+    {".webm", "outputs.webm", read_picture, &kVp9},
 }};
 
 /// Puts `video` among the job's videos, and the picture that each frame leaves for it among the
 /// frame's outputs.
-void add_video(MapReader& reader, const SourceLocation& where, OutputDesc output, Job& job) {
-  VideoDesc video;
+void add_video(MapReader& reader, const SourceLocation& where, VideoDesc video, OutputDesc output,
+               Job& job) {
   video.where = output.where;
   video.file = output.file;
   video.pictures = output.file + ".frames/####.png";
-  video.quality = output.quality;
   output.file = video.pictures;
-  output.quality = OutputDesc().quality;
   if (!has_own_place(reader, where, output.file, job)) return;
   job.outputs.push_back(std::move(output));
   job.videos.push_back(std::move(video));
@@ -109,6 +113,7 @@ void add_video(MapReader& reader, const SourceLocation& where, OutputDesc output
 
 void read_output(MapReader& reader, Job& job) {
   OutputDesc output;
+  VideoDesc video;
   output.where = reader.where();
   reader.require("file", "a file name such as image.####.exr");
   reader.text("file", output.file, "a file name such as image.####.exr");
@@ -117,7 +122,7 @@ void read_output(MapReader& reader, Job& job) {
   if (reader.listing()) {
     for (const FormatRow& row : kFormats) {
       reader.enter_type(row.section);
-      if (row.read != nullptr) row.read(reader, output);
+      row.read_keys(reader, output, video);
     }
     return;
   }
@@ -135,10 +140,10 @@ void read_output(MapReader& reader, Job& job) {
                                        join_names(output_endings())));
     return;
   }
-  check_frame_marks(reader, where, output.file, job.frames, row->video);
+  check_frame_marks(reader, where, output.file, job.frames, row->video != nullptr);
   check_inside_folder(reader, where, output.file);
   reader.enter_section(row->section);
-  row->read(reader, output);
+  row->read_keys(reader, output, video);
   reader.finish();
   if (extension != ".exr" && output.file.find(kLayerMark) != std::string::npos) {
     return reader.complain(where,
@@ -146,9 +151,9 @@ void read_output(MapReader& reader, Job& job) {
                                        "layer beside a name without it",
                                        output.file, kLayerMark));
   }
-  if (row->video) {
+  if (row->video != nullptr) {
     if (has_own_place(reader, where, output.file, job)) {
-      add_video(reader, where, std::move(output), job);
+      add_video(reader, where, std::move(video), std::move(output), job);
     }
     return;
   }

@@ -246,7 +246,7 @@ TEST(FinishTask, ReachesTheFinisherWithAllThatOutputsAndColoursSay) {
   EXPECT_EQ(output.half, half);
   EXPECT_EQ(output.transparent, transparent);
   EXPECT_EQ(output.denoise, denoise);
-  EXPECT_EQ(output.quality, quality);
+  EXPECT_EQ(output.jpeg_quality, quality);
   EXPECT_EQ(output.bits, bits);
   ASSERT_TRUE(read->color);
   EXPECT_TRUE(read->color->config.ends_with("/studio.ocio")) << read->color->config;

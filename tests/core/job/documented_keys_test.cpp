@@ -318,7 +318,7 @@ Outcome outcome_of(const std::string& text) {
   for (const OutputDesc& output : job.outputs) {
     all << "\n"
         << output.file << " " << output.tone_map << " " << output.exposure << " " << output.half
-        << " " << output.transparent << " " << output.denoise << " " << output.quality << " "
+        << " " << output.transparent << " " << output.denoise << " " << output.jpeg_quality << " "
         << output.bits;
     for (const std::string& layer : output.layers) all << " " << layer;
   }
@@ -327,7 +327,7 @@ Outcome outcome_of(const std::string& text) {
         << color->config << " " << color->display << " " << color->view << " " << color->look << " "
         << color->working_space;
   }
-  for (const VideoDesc& video : job.videos) all << "\n" << video.file << " " << video.quality;
+  for (const VideoDesc& video : job.videos) all << "\n" << video.file << " " << video.rate_factor;
   outcome.fingerprint = all.str();
   for (const Curve& curve : job.curves) {
     const auto constant = [](const auto& value) { return value.is_constant(); };
