@@ -4,6 +4,7 @@ import http.server
 import threading
 import unittest
 from collections.abc import Callable
+from contextlib import suppress
 from typing import Any
 
 
@@ -32,10 +33,15 @@ class FakeFarm:
                     return
                 status, headers, body = said
                 self.send_response(status)
-                for name, value in {"Content-Length": str(len(body)), **headers}.items():
+                pieces = [body] if isinstance(body, bytes) else body  # else one after the other
+                length = {"Content-Length": str(len(body))} if isinstance(body, bytes) else {}
+                for name, value in {**length, **headers}.items():
                     self.send_header(name, value)
                 self.end_headers()
-                self.wfile.write(body)
+                with suppress(OSError):  # who asked may be gone
+                    for piece in pieces:
+                        self.wfile.write(piece)
+                        self.wfile.flush()
 
             do_GET = do_POST = do_PUT = handle_one
 

@@ -6,6 +6,7 @@ import os
 import pathlib
 import re
 import tempfile
+import time
 import unittest
 from unittest import mock
 from urllib.parse import parse_qs, urlsplit
@@ -284,7 +285,7 @@ class Bounds(unittest.TestCase):
     def test_whole_numbers_are_those_that_others_can_take(self) -> None:
         """A share of numbers of 400 digits is no float."""
         row = {"id": 1, "name": "a", "state": "running", "samples": 1, "samples_done": (1 << 64) - 1}
-        for name, number in (("samples_done", 10**400), ("samples", -(10**400)), ("seconds_left", 10**400), ("noise", -(10**30))):
+        for name, number in (("samples_done", 10**400), ("samples", -(10**400)), ("seconds_left", 10**400), ("noise", -(10**30)), ("seconds_left", float("inf"))):
             with self.subTest(name):
                 answer = ok({"jobs": [{**row, name: number}], "next_before": 0})
                 self.refused(answer, lambda farm: [job.share for job in farm.jobs()], "unknown", f"has no JobState.*{name}")
@@ -324,6 +325,19 @@ class Bounds(unittest.TestCase):
                 list(parse_events([b"data: " + b"x" * 600] * 2))
             with self.assertRaisesRegex(hyades.FarmError, "JSON"):
                 list(parse_events([b"data: [\n", b"\n"]))
+
+    def test_answers_that_come_drop_by_drop_end(self) -> None:
+        sent = []
+
+        def drops():
+            for drop in [b" "] * 600:
+                time.sleep(0.1)
+                sent.append(drop)
+                yield drop
+
+        with mock.patch.object(hyades.farm.http, "_LONGEST_CALL", 0.5):
+            self.refused(lambda request: (200, {"Content-Length": "600"}, drops()), lambda farm: farm.info(), "unavailable", "answers")
+        self.assertLess(len(sent), 600, "all of it was waited for")
 
     def test_messages_steer_no_terminal(self) -> None:
         said = json.dumps({"error": {"code": "not_\x1b[2Jfound", "message": "no \u202e job\x9b31m\nat all"}}).encode()

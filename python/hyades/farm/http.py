@@ -7,10 +7,12 @@ import ipaddress
 import json
 import os
 import random
+import socket
 import ssl
+import threading
 import time
 from collections.abc import Callable, Iterator, Mapping
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any, TypeVar
 from urllib.parse import urlencode, urlsplit
@@ -21,6 +23,7 @@ from .answers import MOST_JSON, decoded, part, read_bounded
 _T = TypeVar("_T")
 _FIRST_PATIENCE = 3.0  # seconds, for a coordinator that has never answered
 _LONGEST_WAIT = 5.0
+_LONGEST_CALL = 300.0  # seconds; 64 MB of JSON over a slow line
 _AGAIN = (502, 503, 504)
 _DEFAULT_PORT = 8080
 _NETWORK = (OSError, http.client.HTTPException)
@@ -67,8 +70,11 @@ class Http:
             body, headers = json.dumps(message).encode(), {"Content-Type": "application/json"}
 
         def once() -> Any:
-            with self.open(method, path, query=query, body=body, headers=headers, timeout=timeout) as answer:
-                data = read_bounded(answer, MOST_JSON)
+            connection = self._connection(timeout)
+            connection.connect()
+            with _ended_after(connection.sock, _LONGEST_CALL):
+                with self._answer(connection, method, path, query, body, headers) as answer:
+                    data = read_bounded(answer, MOST_JSON)
             return decoded(data) if data else None
 
         return self.patiently(once)
@@ -110,7 +116,19 @@ class Http:
         timeout: float = 30.0,
     ) -> Iterator[http.client.HTTPResponse]:
         """One try of a call, whose answer is read by whoever opened it."""
-        connection = self._connection(timeout)
+        with self._answer(self._connection(timeout), method, path, query, body, headers) as answer:
+            yield answer
+
+    @contextmanager
+    def _answer(
+        self,
+        connection: http.client.HTTPConnection,
+        method: str,
+        path: str,
+        query: Mapping[str, Any] | None,
+        body: bytes | None,
+        headers: Mapping[str, str] | None,
+    ) -> Iterator[http.client.HTTPResponse]:
         try:
             known = {"Authorization": f"Bearer {self._token}"} if self._token else {}
             if query:
@@ -127,6 +145,23 @@ class Http:
         if self._tls is None:
             return http.client.HTTPConnection(self.host, self.port, timeout=timeout)
         return http.client.HTTPSConnection(self.host, self.port, timeout=timeout, context=self._tls)
+
+
+@contextmanager
+def _ended_after(line: socket.socket, seconds: float) -> Iterator[None]:
+    """Cuts the line off where a call takes longer in all, as one does that comes drop by drop."""
+
+    def cut() -> None:
+        with suppress(OSError):
+            line.shutdown(socket.SHUT_RDWR)
+
+    timer = threading.Timer(seconds, cut)
+    timer.daemon = True
+    timer.start()
+    try:
+        yield
+    finally:
+        timer.cancel()
 
 
 class _Again(Exception):

@@ -5,6 +5,7 @@ Times are milliseconds since 1970 (UTC). Fields that a later coordinator adds ar
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass, fields
 from typing import Any, TypeVar, cast
@@ -42,6 +43,8 @@ def _is(hint: str, value: Any) -> bool:
     if value is None:
         return hint.endswith("| None")
     if isinstance(value, int) and abs(value) >= _WHOLE_END:
+        return False
+    if isinstance(value, float) and not math.isfinite(value):
         return False
     return isinstance(value, _PLAIN.get(hint.removesuffix(" | None"), ()))
 
