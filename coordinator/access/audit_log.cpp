@@ -77,16 +77,17 @@ std::string result_name(const grpc::Status& status) {
 
 AuditLog::AuditLog(const AuditOptions& options)
     : most_waiting_(options.most_waiting),
-      actions_({options.folder, "audit", options.most_bytes, options.most_files}),
-      refusals_({options.folder, "refusals", options.most_bytes, options.most_of_others}),
-      uploads_({options.folder, "uploads", options.most_bytes, options.most_of_others}) {}
+      logs_{RotatingLog({options.folder, "audit", options.most_bytes, options.most_files}),
+            RotatingLog({options.folder, "refusals", options.most_bytes, options.most_of_others}),
+            RotatingLog({options.folder, "uploads", options.most_bytes, options.most_of_others})} {}
 
 core::Result<std::unique_ptr<AuditLog>> AuditLog::open(const AuditOptions& options) {
   std::unique_ptr<AuditLog> log(new AuditLog(options));
-  for (Trail* trail : log->trails_) {
-    if (core::Status opened = trail->files.open(); !opened) return opened.error();
-    if (const auto last = read_audit_line(trail->files.last_line())) {
-      trail->last = audit_digest(*last);
+  for (size_t kind = 0; kind < kKinds; ++kind) {
+    if (core::Status opened = log->logs_[kind].open(); !opened) return opened.error();
+    if (const auto last = read_audit_line(log->logs_[kind].last_line())) {
+      const core::MutexLock lock(log->mutex_);
+      log->queues_[kind].last = audit_digest(*last);
     }
   }
   log->thread_ = std::thread([&me = *log] { me.work(); });
@@ -112,12 +113,12 @@ void AuditLog::note(const Caller& caller, const std::string& action, const std::
   const auto now = Clock::now();
   const core::MutexLock lock(mutex_);
   if (!result.ok()) {
-    const RateLimit fresh{{kBurst, kPerSecond, now}, &refusals_};
+    const RateLimit fresh{{kBurst, kPerSecond, now}, kRefusals};
     add_or_hold(failures_.try_emplace(whose, fresh).first->second, std::move(entry));
   } else if (steers_all) {
-    add(actions_, std::move(entry));
+    add(kActions, std::move(entry));
   } else {
-    const RateLimit fresh{{kActionBurst, kActionsPerSecond, now}, &actions_};
+    const RateLimit fresh{{kActionBurst, kActionsPerSecond, now}, kActions};
     add_or_hold(actions_of_.try_emplace(whose, fresh).first->second, std::move(entry));
   }
 }
@@ -129,13 +130,13 @@ void AuditLog::add_or_hold(RateLimit& limit, v1::AuditEntry entry) {
     return;
   }
   limit.held.Clear();
-  add(*limit.trail, std::move(entry));
+  add(limit.kind, std::move(entry));
 }
 
 void AuditLog::upload(const Caller& caller, const std::string& action, const std::string& sha256,
                       const std::string& detail) {
   const core::MutexLock lock(mutex_);
-  add(uploads_, entry_for(caller, action, sha256, grpc::Status::OK, detail));
+  add(kUploads, entry_for(caller, action, sha256, grpc::Status::OK, detail));
 }
 
 void AuditLog::refuse(const Caller& caller, const std::string& action, const grpc::Status& why) {
@@ -144,7 +145,7 @@ void AuditLog::refuse(const Caller& caller, const std::string& action, const grp
   const core::MutexLock lock(mutex_);
   std::string whose = neighbourhood_of(caller.address);
   if (limits_.size() >= kMostLimits && !limits_.contains(whose)) whose = kSharedLimit;
-  const RateLimit fresh{{kBurst, kPerSecond, now}, &refusals_};
+  const RateLimit fresh{{kBurst, kPerSecond, now}, kRefusals};
   RateLimit& limit = limits_.try_emplace(whose, fresh).first->second;
   if (whose == kSharedLimit && limit.held.times() > 0) {
     entry.set_detail("of several addresses, this the last: " + entry.detail());
@@ -162,7 +163,7 @@ void AuditLog::release_of(Limits& limits, bool all) {
   for (auto limit = limits.begin(); limit != limits.end();) {
     v1::AuditEntry& held = limit->second.held;
     if (held.times() > 0 && (all || held.time_ms() < before)) {
-      add(*limit->second.trail, std::move(held));
+      add(limit->second.kind, std::move(held));
       held.Clear();
     }
     const bool idle =
@@ -171,29 +172,30 @@ void AuditLog::release_of(Limits& limits, bool all) {
   }
 }
 
-void AuditLog::add(Trail& trail, v1::AuditEntry entry) {
-  if (trail.queue.size() >= most_waiting_) {
-    ++trail.lost;
+void AuditLog::add(Kind kind, v1::AuditEntry entry) {
+  Queue& queue = queues_[kind];
+  if (queue.lines.size() >= most_waiting_) {
+    ++queue.lost;
     return;
   }
-  if (trail.lost > 0) {
+  if (queue.lost > 0) {
     v1::AuditEntry gap;
     gap.set_time_ms(entry.time_ms());
     gap.set_deed("audit.lost");
     gap.set_result("data_loss");
     gap.set_detail("entries that the disk did not take in time");
-    gap.set_times(std::exchange(trail.lost, 0));
-    trail.append(std::move(gap));
+    gap.set_times(std::exchange(queue.lost, 0));
+    queue.append(std::move(gap));
   }
-  trail.append(std::move(entry));
+  queue.append(std::move(entry));
   wake_.notify_all();
 }
 
-void AuditLog::Trail::append(v1::AuditEntry entry) {
+void AuditLog::Queue::append(v1::AuditEntry entry) {
   entry.set_previous(last);
   const std::string line = audit_line(entry);
   last = core::to_hex(core::sha256(line));
-  queue.push_back(line + "\n");
+  lines.push_back(line + "\n");
 }
 
 void AuditLog::flush() {
@@ -203,27 +205,27 @@ void AuditLog::flush() {
 }
 
 bool AuditLog::all_written() const {
-  return !busy_ && std::all_of(trails_.begin(), trails_.end(),
-                               [](const Trail* trail) { return trail->queue.empty(); });
+  return !busy_ && std::all_of(queues_.begin(), queues_.end(),
+                               [](const Queue& queue) { return queue.lines.empty(); });
 }
 
-/// Some of what waits in a trail, without the lock meanwhile; whether the disk has taken it.
-bool AuditLog::write_some(Trail& trail) {
+/// Some of what waits in a queue, without the lock meanwhile; whether the disk has taken it.
+bool AuditLog::write_some(Kind kind) {
+  std::deque<std::string>& waiting = queues_[kind].lines;
   std::string lines;
   size_t count = 0;
-  for (; count < trail.queue.size() && lines.size() < kPiece; ++count) lines += trail.queue[count];
+  for (; count < waiting.size() && lines.size() < kPiece; ++count) lines += waiting[count];
   busy_ = true;
   mutex_.unlock();
-  const bool done = trail.files.write(lines);
+  const bool done = logs_[kind].write(lines);
   mutex_.lock();
   busy_ = false;
-  if (done)
-    trail.queue.erase(trail.queue.begin(), trail.queue.begin() + static_cast<int64_t>(count));
+  if (done) waiting.erase(waiting.begin(), waiting.begin() + static_cast<int64_t>(count));
   written_.notify_all();
   return done;
 }
 
-/// A piece of each trail in turn, so that none waits for all of another.
+/// A piece of each queue in turn, so that none waits for all of another.
 void AuditLog::work() {
   const core::MutexLock lock(mutex_);
   auto release = Clock::now() + kHeldAtMost / 2;
@@ -234,10 +236,10 @@ void AuditLog::work() {
     }
     bool some = false;
     bool done = false;
-    for (Trail* trail : trails_) {
-      if (trail->queue.empty()) continue;
+    for (const Kind kind : {kActions, kRefusals, kUploads}) {
+      if (queues_[kind].lines.empty()) continue;
       some = true;
-      done = write_some(*trail) || done;
+      done = write_some(kind) || done;
     }
     if (!some) {
       if (stop_) return;
@@ -252,10 +254,10 @@ void AuditLog::work() {
 
 AuditLog::Reader AuditLog::read() const {
   Reader reader;
-  for (const Trail* trail : trails_) {
+  for (const RotatingLog& log : logs_) {
     reader.rows_.emplace_back();
-    reader.rows_.back().log = trail->files.name();
-    reader.rows_.back().files = trail->files.for_reading();
+    reader.rows_.back().log = log.name();
+    reader.rows_.back().files = log.for_reading();
     reader.rows_.back().step();
   }
   return reader;

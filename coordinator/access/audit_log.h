@@ -86,43 +86,40 @@ class AuditLog {
   Reader read() const;
 
  private:
-  struct Trail;
+  /// As they are written.
+  enum Kind : uint8_t { kActions, kRefusals, kUploads, kKinds };
+
   /// Bounds how many entries of a neighbourhood or a token are noted one by one.
   struct RateLimit {
     farm::TokenBucket bucket;
-    Trail* trail = nullptr;
+    Kind kind = kActions;
     v1::AuditEntry held{};  ///< with `times` of those that were not noted
   };
   using Limits = std::map<std::string, RateLimit>;
 
-  /// Lines of one kind.
-  struct Trail {
-    explicit Trail(RotatingLog::Options options) : files(std::move(options)) {}
-    RotatingLog files;              ///< written by the thread alone, once it runs
-    std::deque<std::string> queue;  ///< with the lock
-    uint64_t lost = 0;              ///< that found no room in the queue
-    std::string last;               ///< audit_digest() of the last entry
-    /// Adds the entry to the queue and to the chain.
+  /// Lines of one kind that wait for the disk.
+  struct Queue {
+    std::deque<std::string> lines;
+    uint64_t lost = 0;  ///< that found no room
+    std::string last;   ///< audit_digest() of the last entry
+    /// Adds the entry to the lines and to the chain.
     void append(v1::AuditEntry entry);
   };
 
   explicit AuditLog(const AuditOptions& options);
-  void add(Trail& trail, v1::AuditEntry entry) HYADES_REQUIRES(mutex_);
+  void add(Kind kind, v1::AuditEntry entry) HYADES_REQUIRES(mutex_);
   void add_or_hold(RateLimit& limit, v1::AuditEntry entry) HYADES_REQUIRES(mutex_);
   void release_of(Limits& limits, bool all) HYADES_REQUIRES(mutex_);
   void release_held(bool all) HYADES_REQUIRES(mutex_);
   bool all_written() const HYADES_REQUIRES(mutex_);
-  bool write_some(Trail& trail) HYADES_REQUIRES(mutex_);
+  bool write_some(Kind kind) HYADES_REQUIRES(mutex_);
   void work();
 
   const size_t most_waiting_;
+  std::array<RotatingLog, kKinds> logs_;  ///< written by the thread alone, once it runs
 
   mutable core::Mutex mutex_;
-  Trail actions_;
-  Trail refusals_;
-  Trail uploads_;
-  const std::array<Trail*, 3> trails_ = {&actions_, &refusals_,
-                                         &uploads_};  ///< as they are written
+  std::array<Queue, kKinds> queues_ HYADES_GUARDED_BY(mutex_);
   Limits limits_ HYADES_GUARDED_BY(mutex_);      ///< of refusals, by neighbourhood_of() an address
   Limits failures_ HYADES_GUARDED_BY(mutex_);    ///< of actions that failed, by token
   Limits actions_of_ HYADES_GUARDED_BY(mutex_);  ///< of others, by token

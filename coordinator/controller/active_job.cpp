@@ -355,6 +355,7 @@ core::Result<std::unique_ptr<ActiveJob>> make_active_job(const StoredJob& stored
   if (const core::Status portable = check_color_files(job, files); !portable) {
     return portable.error();
   }
+  const NotSharedYet alone;
   auto active = std::make_unique<ActiveJob>(stored, spec);
   auto numbers = frames_of(spec, job);
   if (!numbers) return numbers.error();

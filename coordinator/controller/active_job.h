@@ -196,7 +196,7 @@ v1::Job describe(const StoredJob& job);
 /// what a farm does not do of it, or that the film of a frame takes more than `film_memory` bytes.
 core::Result<std::unique_ptr<ActiveJob>> make_active_job(
     const StoredJob& stored, const v1::JobSpec& spec, const farm::ReadJob& read,
-    farm::ContentStore& assets, uint64_t film_memory) HYADES_NO_THREAD_SAFETY_ANALYSIS;
+    farm::ContentStore& assets, uint64_t film_memory) HYADES_EXCLUDES(state_lock);
 
 /// Bytes that a job of this spec takes in memory while it is open, but for its frames, films and
 /// videos.

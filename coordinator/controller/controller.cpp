@@ -14,6 +14,7 @@
 #include "coordinator/controller/job_films.h"
 #include "coordinator/controller/job_records.h"
 #include "coordinator/controller/job_recovery.h"
+#include "coordinator/controller/job_starter.h"
 #include "coordinator/controller/sweeper.h"
 #include "coordinator/meters/meters.h"
 
@@ -82,9 +83,10 @@ struct Controller::Parts {
   FrameFinisher finisher{context, dispatcher, jobs, disk, timelines};
   FrameProgress frames{context, dispatcher, jobs, workers, finisher, timelines};
   VideoMaker videos{context, jobs, records, disk, timelines};
-  JobRecovery recovery{context, dispatcher, jobs, films};
+  JobStarter starter{context, dispatcher, jobs, films};
+  JobRecovery recovery{context, jobs, starter};
   Sweeper sweeper{context, unclaimed};
-  JobIntake intake{context, dispatcher, jobs,      queries, records, recovery,
+  JobIntake intake{context, dispatcher, jobs,      queries, records, starter,  recovery,
                    disk,    sweeper,    timelines, videos,  quotas,  unclaimed};
   JobSteering steering{context, dispatcher, jobs, queries, records, finisher, videos};
   Diagnosis diagnosis{context, dispatcher, jobs, workers, sessions, disk, videos};

@@ -13,6 +13,7 @@
 #include "coordinator/controller/disk_watch.h"
 #include "coordinator/controller/job_queries.h"
 #include "coordinator/controller/job_recovery.h"
+#include "coordinator/controller/job_starter.h"
 #include "coordinator/controller/job_steering.h"
 #include "coordinator/controller/not_found.h"
 #include "coordinator/controller/remove_folder.h"
@@ -141,29 +142,25 @@ grpc::Status JobIntake::submit(const v1::SubmitRequest& request, bool owner_prov
   // What was not needed may have been removed meanwhile; from here on nothing is.
   if (const grpc::Status here = files_are_here(request.spec()); !here.ok()) return here;
   if (!*active) return wrong(active->error().message);
-  return take_in(std::move(**active), response, *files);
+  return take_in(std::move(**active), request.owner(), response, *files);
 }
 
 /// Stores a new job, which nobody else knows yet, and begins with it.
-grpc::Status JobIntake::take_in(std::unique_ptr<ActiveJob> active, v1::SubmitResponse& response,
+grpc::Status JobIntake::take_in(std::unique_ptr<ActiveJob> active, const std::string& owner,
+                                v1::SubmitResponse& response,
                                 const std::vector<core::AssetRecord>& files) {
   const JobRoom more{active->numbers.size(), active->bytes};
-  if (const grpc::Status room = has_room_for(active->stored.owner, more); !room.ok()) return room;
-  const auto added = context_.store->add_job(active->stored);
+  if (const grpc::Status room = has_room_for(owner, more); !room.ok()) return room;
+  const auto added = [&] {
+    const NotSharedYet alone;
+    return context_.store->add_job(active->stored);
+  }();
   if (!added) return farm::unavailable(added.error());
   core::failpoint("job-stored");
   for (const core::AssetRecord& file : files) unclaimed_.remove(file.sha256);
   if (!added->existed) {
-    active->id = JobId{added->id};
-    active->stored.id = added->id;
-    const std::string& owner = active->stored.owner;
-    jobs_.note(*active, v1::LOG_LEVEL_INFO, std::nullopt, {},
-               fmt::format("submitted by {}: {}", owner.empty() ? "nobody in particular" : owner,
-                           core::counted(active->numbers.size(), "frame")));
-    for (const std::string& warning : response.warnings()) {
-      jobs_.note(*active, v1::LOG_LEVEL_WARNING, std::nullopt, {}, warning);
-    }
-    if (core::Status started = recovery_.start(std::move(active), {}); !started) {
+    note_submission(*active, added->id, response);
+    if (core::Status started = starter_.start(std::move(active), {}); !started) {
       // Nothing was promised yet.
       (void)context_.store->remove_job(added->id);
       return farm::unavailable(started.error());
@@ -171,6 +168,21 @@ grpc::Status JobIntake::take_in(std::unique_ptr<ActiveJob> active, v1::SubmitRes
   }
   if (added->existed) response.clear_warnings();
   return answer_with(added->id, added->existed, response);
+}
+
+/// What the log of a new job begins with.
+void JobIntake::note_submission(ActiveJob& active, uint64_t id,
+                                const v1::SubmitResponse& response) {
+  const NotSharedYet alone;
+  active.id = JobId{id};
+  active.stored.id = id;
+  const std::string& owner = active.stored.owner;
+  jobs_.note(active, v1::LOG_LEVEL_INFO, std::nullopt, {},
+             fmt::format("submitted by {}: {}", owner.empty() ? "nobody in particular" : owner,
+                         core::counted(active.numbers.size(), "frame")));
+  for (const std::string& warning : response.warnings()) {
+    jobs_.note(active, v1::LOG_LEVEL_WARNING, std::nullopt, {}, warning);
+  }
 }
 
 grpc::Status JobIntake::answer_with(uint64_t id, bool existed, v1::SubmitResponse& response) {
@@ -306,7 +318,7 @@ grpc::Status JobIntake::reopen(uint64_t id, std::optional<JobRead> read,
     const StateLock lock(context_.mutex);
     return jobs_.begin_recovery(id, {job.owner, {job.frames, memory_of(job)}});
   }();
-  if (!mine) return is_taken_up(id);
+  if (!mine) return being_recovered(id);
   if (core::Status noted = context_.store->update_job(job); !noted)
     return farm::unavailable(noted.error());
   one.unlock();  // what is in its films and outputs may be much
@@ -353,7 +365,7 @@ grpc::Status JobIntake::may_remove(uint64_t id, Duration patience) {
       return {grpc::StatusCode::FAILED_PRECONDITION,
               fmt::format("job {} has not ended: cancel it first", id)};
     }
-    if (jobs_.recovering().contains(id)) return is_taken_up(id);
+    if (jobs_.recovering().contains(id)) return being_recovered(id);
   }
   return wait_until_left(id, patience);
 }

@@ -22,6 +22,7 @@ namespace hyades::coordinator {
 class DiskWatch;
 class JobQueries;
 class JobRecovery;
+class JobStarter;
 struct JobRead;
 class Sweeper;
 class VideoMaker;
@@ -31,14 +32,15 @@ class VideoMaker;
 class JobIntake {
  public:
   JobIntake(ControllerContext& context, Dispatcher& dispatcher, JobTable& jobs, JobQueries& queries,
-            JobRecords& records, JobRecovery& recovery, DiskWatch& disk, Sweeper& sweeper,
-            Timelines& timelines, VideoMaker& videos, const OwnerQuotas& quotas,
+            JobRecords& records, JobStarter& starter, JobRecovery& recovery, DiskWatch& disk,
+            Sweeper& sweeper, Timelines& timelines, VideoMaker& videos, const OwnerQuotas& quotas,
             UnclaimedFiles& unclaimed)
       : context_(context),
         dispatcher_(dispatcher),
         jobs_(jobs),
         queries_(queries),
         records_(records),
+        starter_(starter),
         recovery_(recovery),
         disk_(disk),
         sweeper_(sweeper),
@@ -58,9 +60,11 @@ class JobIntake {
   grpc::Status remove(uint64_t job) HYADES_EXCLUDES(state_lock);
 
  private:
-  grpc::Status take_in(std::unique_ptr<ActiveJob> active, v1::SubmitResponse& response,
-                       const std::vector<core::AssetRecord>& files)
-      HYADES_EXCLUDES(state_lock) HYADES_NO_THREAD_SAFETY_ANALYSIS;
+  grpc::Status take_in(std::unique_ptr<ActiveJob> active, const std::string& owner,
+                       v1::SubmitResponse& response, const std::vector<core::AssetRecord>& files)
+      HYADES_EXCLUDES(state_lock);
+  void note_submission(ActiveJob& active, uint64_t id, const v1::SubmitResponse& response)
+      HYADES_EXCLUDES(state_lock);
   std::optional<JobRead> read_ahead(uint64_t id) HYADES_EXCLUDES(state_lock);
   grpc::Status reopen(uint64_t job, std::optional<JobRead> read,
                       std::unique_lock<std::timed_mutex> one, v1::Job& now)
@@ -81,6 +85,7 @@ class JobIntake {
   JobTable& jobs_;
   JobQueries& queries_;
   JobRecords& records_;
+  JobStarter& starter_;
   JobRecovery& recovery_;
   DiskWatch& disk_;
   Sweeper& sweeper_;

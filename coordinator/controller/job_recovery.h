@@ -9,13 +9,12 @@
 #include <vector>
 
 #include "coordinator/controller/controller_context.h"
-#include "coordinator/controller/dispatcher.h"
 #include "coordinator/controller/job_table.h"
 #include "farm/retry_queue.h"
 
 namespace hyades::coordinator {
 
-class JobFilms;
+class JobStarter;
 
 /// Whether the job's file is among the assets, whole.
 bool is_stored(const v1::JobFile& file, farm::ContentStore& assets);
@@ -35,12 +34,12 @@ struct JobRead {
   Obstacle obstacle = Obstacle::none;
 };
 
-/// Brings jobs into memory: new ones, those that were open when the coordinator ended, and those
-/// that are reopened.
+/// Brings jobs back into memory: those that were open when the coordinator ended, and those that
+/// are reopened.
 class JobRecovery {
  public:
-  JobRecovery(ControllerContext& context, Dispatcher& dispatcher, JobTable& jobs, JobFilms& films)
-      : context_(context), dispatcher_(dispatcher), jobs_(jobs), films_(films) {}
+  JobRecovery(ControllerContext& context, JobTable& jobs, JobStarter& starter)
+      : context_(context), jobs_(jobs), starter_(starter) {}
 
   /// Waits for what is in work.
   void end() { queue_.end(); }
@@ -54,10 +53,7 @@ class JobRecovery {
   JobRead read(uint64_t id) HYADES_EXCLUDES(state_lock);
   /// Recovers the job, which was read before, as it is stored by now; its log says `told`.
   core::Status recover(uint64_t id, JobRead read, const std::string& told)
-      HYADES_EXCLUDES(state_lock) HYADES_NO_THREAD_SAFETY_ANALYSIS;
-  /// Looks which films are there, and hands the job to the scheduler.
-  core::Status start(std::unique_ptr<ActiveJob> owned, RestoredJob restored)
-      HYADES_EXCLUDES(state_lock) HYADES_NO_THREAD_SAFETY_ANALYSIS;
+      HYADES_EXCLUDES(state_lock);
 
  private:
   bool recover_later(uint64_t id) HYADES_EXCLUDES(state_lock);
@@ -65,22 +61,21 @@ class JobRecovery {
   void recover_in_background(uint64_t id) HYADES_EXCLUDES(state_lock);
   core::Status give_up(uint64_t id, const core::Error& why);
   std::optional<bool> lacks_files(const v1::JobSpec& spec) HYADES_EXCLUDES(state_lock);
-  // Of a job that nobody else knows yet.
+  core::Status restore(ActiveJob& active, StoredJob now, const std::string& told,
+                       std::optional<RestoredJob>& restored) HYADES_EXCLUDES(state_lock);
+  // Of a job that nobody else knows yet: see NotSharedYet.
   core::Result<std::vector<StoredFrame>> frames_over(ActiveJob& active) const
-      HYADES_NO_THREAD_SAFETY_ANALYSIS;
-  core::Result<RestoredJob> restore_frames(ActiveJob& active) HYADES_NO_THREAD_SAFETY_ANALYSIS;
+      HYADES_REQUIRES(state_lock);
+  core::Result<RestoredJob> restore_frames(ActiveJob& active) HYADES_REQUIRES(state_lock);
   core::Result<std::vector<StoredOutput>> lost_outputs(uint64_t id) const;
   core::Result<std::set<int32_t>> frames_to_repeat(const ActiveJob& active,
                                                    const std::vector<StoredFrame>& frames);
   core::Status repeat_for_videos(const ActiveJob& active, const std::vector<int32_t>& done,
                                  std::set<int32_t>& repeated);
-  void restore_films(ActiveJob& active, const LogContents& contents,
-                     RestoredJob& restored) HYADES_NO_THREAD_SAFETY_ANALYSIS;
 
   ControllerContext& context_;
-  Dispatcher& dispatcher_;
   JobTable& jobs_;
-  JobFilms& films_;
+  JobStarter& starter_;
   core::Mutex mutex_;
   core::CondVar tried_;
   size_t not_tried_ HYADES_GUARDED_BY(mutex_) = 0;  ///< of recover_all()'s

@@ -49,4 +49,14 @@ class HYADES_SCOPED_CAPABILITY StateLock {
   bool held_ = true;
 };
 
+/// Stands for the state lock where a job is made ready that nobody else knows yet: nothing has to
+/// be held for it, and what is slow may happen.
+class HYADES_SCOPED_CAPABILITY NotSharedYet {
+ public:
+  NotSharedYet() HYADES_ACQUIRE(state_lock) HYADES_NO_THREAD_SAFETY_ANALYSIS {}
+  ~NotSharedYet() HYADES_RELEASE() HYADES_NO_THREAD_SAFETY_ANALYSIS {}
+  NotSharedYet(const NotSharedYet&) = delete;
+  NotSharedYet& operator=(const NotSharedYet&) = delete;
+};
+
 }  // namespace hyades::coordinator

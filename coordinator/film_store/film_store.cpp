@@ -100,6 +100,7 @@ LogFiles& FilmStore::files() const {
 }
 
 core::Result<LogContents> FilmStore::open() {
+  own_thread_.assert_held();
   if (options_.folder.empty()) return LogContents{};
   const bool erase = options_.kept == KeptFilms::erase;
   if (core::Status opened = open_log(erase); !opened) return opened.error();
@@ -147,6 +148,7 @@ core::Result<LogContents> FilmStore::open() {
 }
 
 core::Status FilmStore::start(int32_t tile_size) {
+  own_thread_.assert_held();
   tile_size_ = tile_size;
   if (log_ && write_cut_) {
     auto written = log_->append(encode_cut({set_.region, tile_size, set_.samples}));
@@ -243,11 +245,6 @@ void FilmStore::drain() {
   room_.notify_all();
 }
 
-uint64_t FilmStore::waiting_bytes() const {
-  const core::MutexLock lock(mutex_);
-  return waiting_bytes_;
-}
-
 std::string FilmStore::trouble() const {
   const core::MutexLock lock(mutex_);
   return trouble_;
@@ -277,6 +274,7 @@ void FilmStore::wait_for_work() {
 }
 
 void FilmStore::run() {
+  own_thread_.assert_held();
   for (;;) {
     core::MutexLock lock(mutex_);
     wait_for_work();
@@ -355,16 +353,19 @@ void FilmStore::settle(uint64_t durable) {
 void FilmStore::apply(const Record& record) {
   std::visit(core::Overloaded{
                  [&](const UnitRecord& unit) {
+                   own_thread_.assert_held();
                    const AcceptedUnit& accepted = unit.accepted;
                    if (accepted.worker_class.empty()) return;
                    classes_[accepted.unit.frame] = accepted.worker_class;
                  },
                  [&](const FrameFinishedRecord& done) {
+                   own_thread_.assert_held();
                    finished_[done.frame] = {key_of(done.frame), set_.region};
                    unfinished_.erase(done.frame);
                  },
                  [](const FrameFailedRecord&) {},
                  [&](const FrameRestartedRecord& restarted) {
+                   own_thread_.assert_held();
                    aside_.remove(restarted.frame);
                    films_.erase(restarted.frame);
                    classes_.erase(restarted.frame);
@@ -372,6 +373,7 @@ void FilmStore::apply(const Record& record) {
                    unfinished_.erase(restarted.frame);
                  },
                  [&](const TileVoidedRecord& voided) {
+                   own_thread_.assert_held();
                    if (is_aside(voided.frame)) return aside_.add(voided.frame, encode(voided));
                    const auto whole = films_.find(voided.frame);
                    if (whole == films_.end()) return;
@@ -381,7 +383,10 @@ void FilmStore::apply(const Record& record) {
                    }
                    whole->second->erase(voided.tile);
                  },
-                 [&](const DisputeRecord& dispute) { disputed_ = dispute.open; },
+                 [&](const DisputeRecord& dispute) {
+                   own_thread_.assert_held();
+                   disputed_ = dispute.open;
+                 },
                  [](const DivergentWorkerRecord&) {},
              },
              record);
@@ -394,6 +399,7 @@ void FilmStore::release(uint64_t memory) {
 }
 
 core::Status FilmStore::merge(RecordId record) {
+  own_thread_.assert_held();
   const UnitRecord* unit = settling_ != nullptr && settling_->id == record
                                ? std::get_if<UnitRecord>(&settling_->record)
                                : nullptr;
@@ -416,11 +422,13 @@ core::Status FilmStore::merge(RecordId record) {
 }
 
 std::shared_ptr<const core::Film> FilmStore::film(int32_t frame) const {
+  own_thread_.assert_held();
   const auto it = films_.find(frame);
   return it == films_.end() ? nullptr : it->second;
 }
 
 core::Status FilmStore::set_aside(int32_t frame) {
+  own_thread_.assert_held();
   const auto it = films_.find(frame);
   if (it == films_.end()) return {};
   if (!logs() || tile_size_ < 1) return core::Error{"films are kept in memory alone"};
@@ -432,8 +440,10 @@ core::Status FilmStore::set_aside(int32_t frame) {
 }
 
 bool FilmStore::fetch(int32_t frame) {
+  own_thread_.assert_held();
   if (!is_aside(frame)) return true;
   const auto read = [&] {
+    own_thread_.assert_held();
     const auto alone = hold_whole_records();
     return aside_.read(frame);
   };
@@ -451,6 +461,7 @@ bool FilmStore::fetch(int32_t frame) {
 }
 
 void FilmStore::forget(int32_t frame, FrameEnd end) {
+  own_thread_.assert_held();
   if (const auto bytes = frame_bytes_.extract(frame)) useless_bytes_ += bytes.mapped();
   const auto it = films_.find(frame);
   if (end == FrameEnd::unwritten && log_ && unfinished_.size() < kUnfinishedFilms) {

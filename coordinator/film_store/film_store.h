@@ -102,7 +102,10 @@ class FilmStore {
   /// Opens the log, if there is to be one, and returns what it holds of the frames it is for.
   core::Result<LogContents> open();
   /// The frame's outputs are gone: it will be rendered again. Before start().
-  void reopen(int32_t frame) { finished_.erase(frame); }
+  void reopen(int32_t frame) {
+    own_thread_.assert_held();
+    finished_.erase(frame);
+  }
   /// Begins to store what is handed over. `tile_size` [pixels]: how the films' frames are cut.
   core::Status start(int32_t tile_size);
   /// Waits for the end of the thread; somebody has called drain().
@@ -122,8 +125,6 @@ class FilmStore {
   void drain();
   /// Why nothing can be stored at the moment; empty where it can.
   std::string trouble() const;
-  /// So many bytes of films wait for the disk.
-  uint64_t waiting_bytes() const;
   /// As much waits for the disk as may: who delivers should come again later.
   bool crowded() const;
   /// The disk is short: the log is rewritten soon, if that frees something.
@@ -141,9 +142,13 @@ class FilmStore {
   /// fetch(), or when something is merged with it. On an error it stays in memory.
   core::Status set_aside(int32_t frame);
   /// Whether the frame's film is set aside.
-  bool is_aside(int32_t frame) const { return aside_.contains(frame); }
+  bool is_aside(int32_t frame) const {
+    own_thread_.assert_held();
+    return aside_.contains(frame);
+  }
   /// A copy of the frame's film, which is set aside and stays so; null where it holds nothing.
   core::Result<std::shared_ptr<core::Film>> read_aside(int32_t frame) const {
+    own_thread_.assert_held();
     return aside_.read(frame);
   }
   /// Has the frame's film in memory, if there is one. Whether that could be done: where it cannot
@@ -167,27 +172,31 @@ class FilmStore {
 
   /// Whether there is, or will be, a log.
   bool logs() const { return !options_.folder.empty(); }
-  core::Status open_log(bool erase);
+  core::Status open_log(bool erase) HYADES_REQUIRES(own_thread_);
   FrameKey key_of(int32_t frame) const;
   std::vector<std::byte> encoded(const Record& record) const;
   void push(Item item, bool may_wait);
   void run();
-  bool has_work() const HYADES_REQUIRES(mutex_);
-  void wait_for_work() HYADES_REQUIRES(mutex_);
-  void append(std::deque<Item> items);
-  void settle(uint64_t durable);
-  void apply(const Record& record);
-  void compact_if_worthwhile(bool room_wanted);
-  core::Status write_snapshot(const FilmLog::Sink& sink, Places& places);
+  bool has_work() const HYADES_REQUIRES(mutex_, own_thread_);
+  void wait_for_work() HYADES_REQUIRES(mutex_, own_thread_);
+  void append(std::deque<Item> items) HYADES_REQUIRES(own_thread_);
+  void settle(uint64_t durable) HYADES_REQUIRES(own_thread_);
+  void apply(const Record& record) HYADES_REQUIRES(own_thread_);
+  void compact_if_worthwhile(bool room_wanted) HYADES_REQUIRES(own_thread_);
+  core::Status write_snapshot(const FilmLog::Sink& sink, Places& places)
+      HYADES_REQUIRES(own_thread_);
   void release(uint64_t memory);
   LogFiles& files() const;
-  core::Status copy_aside(int32_t frame, const FilmLog::Sink& sink, Places& places);
-  core::Status put_film(int32_t frame, const core::Film& film, const FilmLog::Sink& sink);
-  core::Status count(int32_t frame, std::span<const std::byte> record, const FilmLog::Sink& sink);
+  core::Status copy_aside(int32_t frame, const FilmLog::Sink& sink, Places& places)
+      HYADES_REQUIRES(own_thread_);
+  core::Status put_film(int32_t frame, const core::Film& film, const FilmLog::Sink& sink)
+      HYADES_REQUIRES(own_thread_);
+  core::Status count(int32_t frame, std::span<const std::byte> record, const FilmLog::Sink& sink)
+      HYADES_REQUIRES(own_thread_);
   std::unique_lock<core::Mutex> hold_whole_records() const;
-  void set_unfinished_aside();
+  void set_unfinished_aside() HYADES_REQUIRES(own_thread_);
   bool wait_to_read(TimePoint end);
-  std::string class_of(int32_t frame) const;
+  std::string class_of(int32_t frame) const HYADES_REQUIRES(own_thread_);
 
   const FilmSet set_;
   const FilmStoreOptions options_;
@@ -206,28 +215,35 @@ class FilmStore {
   std::string trouble_ HYADES_GUARDED_BY(mutex_);
   TimePoint trouble_since_ HYADES_GUARDED_BY(mutex_);
 
-  /// Of the store's thread.
-  std::deque<Item> appended_;  ///< not durable yet, or not settled
-  Item* settling_ = nullptr;
-  std::map<int32_t, std::shared_ptr<core::Film>> films_;
-  FilmsAside aside_;                        ///< films that are set aside, and so not in films_
-  std::map<int32_t, std::string> classes_;  ///< of frames, where workers delivered their films
-  std::map<int32_t, FinishedRecord> finished_;
+  /// The store's thread, and who opens and starts it.
+  core::ThreadRole own_thread_;
+  std::deque<Item> appended_ HYADES_GUARDED_BY(own_thread_);  ///< not durable yet, or not settled
+  Item* settling_ HYADES_GUARDED_BY(own_thread_) = nullptr;
+  std::map<int32_t, std::shared_ptr<core::Film>> films_ HYADES_GUARDED_BY(own_thread_);
+  FilmsAside aside_
+      HYADES_GUARDED_BY(own_thread_);  ///< films that are set aside, and so not in films_
+  std::map<int32_t, std::string> classes_
+      HYADES_GUARDED_BY(own_thread_);  ///< of frames, where workers delivered their films
+  std::map<int32_t, FinishedRecord> finished_ HYADES_GUARDED_BY(own_thread_);
   /// Complete films of frames whose outputs could not be written; null where they are set aside.
-  std::map<int32_t, std::shared_ptr<core::Film>> unfinished_;
-  bool unfinished_anew_ = false;  ///< one of them may be set aside
-  int32_t tile_size_ = 0;
-  bool disputed_ = false;   ///< films may be wrong
-  bool write_cut_ = false;  ///< the log is new
-  uint64_t settled_sequence_ = 0;
-  uint64_t log_bytes_ = 0;                   ///< since the last snapshot
-  uint64_t snapshot_bytes_ = 0;              ///< of the last snapshot
-  uint64_t useless_bytes_ = 0;               ///< in the log, of frames that are over
-  std::map<int32_t, uint64_t> frame_bytes_;  ///< in the log, of frames that are not
-  TimePoint compact_again_;                  ///< after a failure
-  bool others_films_ = false;                ///< the log has films of frames that nobody asked for
-  std::optional<TimePoint> try_again_at_;
-  bool gave_up_ = false;  ///< the listener knows of the trouble that there is
+  std::map<int32_t, std::shared_ptr<core::Film>> unfinished_ HYADES_GUARDED_BY(own_thread_);
+  bool unfinished_anew_ HYADES_GUARDED_BY(own_thread_) = false;  ///< one of them may be set aside
+  int32_t tile_size_ HYADES_GUARDED_BY(own_thread_) = 0;
+  bool disputed_ HYADES_GUARDED_BY(own_thread_) = false;   ///< films may be wrong
+  bool write_cut_ HYADES_GUARDED_BY(own_thread_) = false;  ///< the log is new
+  uint64_t settled_sequence_ HYADES_GUARDED_BY(own_thread_) = 0;
+  uint64_t log_bytes_ HYADES_GUARDED_BY(own_thread_) = 0;       ///< since the last snapshot
+  uint64_t snapshot_bytes_ HYADES_GUARDED_BY(own_thread_) = 0;  ///< of the last snapshot
+  uint64_t useless_bytes_ HYADES_GUARDED_BY(own_thread_) =
+      0;  ///< in the log, of frames that are over
+  std::map<int32_t, uint64_t> frame_bytes_
+      HYADES_GUARDED_BY(own_thread_);                       ///< in the log, of frames that are not
+  TimePoint compact_again_ HYADES_GUARDED_BY(own_thread_);  ///< after a failure
+  bool others_films_ HYADES_GUARDED_BY(own_thread_) =
+      false;  ///< the log has films of frames that nobody asked for
+  std::optional<TimePoint> try_again_at_ HYADES_GUARDED_BY(own_thread_);
+  bool gave_up_ HYADES_GUARDED_BY(own_thread_) =
+      false;  ///< the listener knows of the trouble that there is
 
   std::unique_ptr<FilmLog> log_;
   std::thread thread_;

@@ -41,8 +41,13 @@ void FilmStore::compact_if_worthwhile(bool room_wanted) {
   std::map<int32_t, uint64_t> frames_before = std::exchange(frame_bytes_, {});
   Places places;
   const core::Status done = log_->compact(
-      settled_sequence_, [&](const FilmLog::Sink& sink) { return write_snapshot(sink, places); },
+      settled_sequence_,
+      [&](const FilmLog::Sink& sink) {
+        own_thread_.assert_held();
+        return write_snapshot(sink, places);
+      },
       [&] {
+        own_thread_.assert_held();
         for (auto& [frame, records] : places) aside_.move(frame, std::move(records));
       });
   if (done) {
@@ -62,6 +67,7 @@ void FilmStore::compact_if_worthwhile(bool room_wanted) {
 
 core::Status FilmStore::write_snapshot(const FilmLog::Sink& sink, Places& places) {
   const auto put = [&](std::span<const std::byte> bytes) {
+    own_thread_.assert_held();
     snapshot_bytes_ += bytes.size();
     return sink(bytes);
   };
@@ -87,6 +93,7 @@ core::Status FilmStore::copy_aside(int32_t frame, const FilmLog::Sink& sink, Pla
   const auto alone = hold_whole_records();
   const bool in_log = !aside_.frames().at(frame).places.empty();
   return aside_.copy(frame, [&](std::span<const std::byte> record) -> core::Status {
+    own_thread_.assert_held();
     if (core::Status done = count(frame, record, sink); !done) return done;
     if (in_log) places[frame].push_back(log_->place());
     return {};
@@ -96,8 +103,10 @@ core::Status FilmStore::copy_aside(int32_t frame, const FilmLog::Sink& sink, Pla
 core::Status FilmStore::put_film(int32_t frame, const core::Film& film, const FilmLog::Sink& sink) {
   const auto alone = hold_whole_records();
   return write_film(frame, key_of(frame), film, {set_.region, tile_size_, set_.samples},
-                    class_of(frame),
-                    [&](std::span<const std::byte> record) { return count(frame, record, sink); });
+                    class_of(frame), [&](std::span<const std::byte> record) {
+                      own_thread_.assert_held();
+                      return count(frame, record, sink);
+                    });
 }
 
 /// Puts a record of the frame into a snapshot, which ends when the run does.

@@ -27,6 +27,9 @@
 /// Of a function: it lets go of these locks (none named: of itself).
 #define HYADES_RELEASE(...) HYADES_THREAD_ANNOTATION(release_capability(__VA_ARGS__))
 
+/// Of a function: who calls it has this lock, which is taken for granted and not proved.
+#define HYADES_ASSERT_CAPABILITY(lock) HYADES_THREAD_ANNOTATION(assert_capability(lock))
+
 /// Of a function: it is not looked into, as it does what the analysis cannot follow.
 #define HYADES_NO_THREAD_SAFETY_ANALYSIS HYADES_THREAD_ANNOTATION(no_thread_safety_analysis)
 
@@ -41,6 +44,13 @@ class HYADES_CAPABILITY("mutex") Mutex {
  private:
   friend class CondVar;
   std::mutex mutex_;
+};
+
+/// Stands for a thread, for what that one alone reads and writes and no lock guards. It holds
+/// nothing: a function that the thread enters by says so with assert_held().
+class HYADES_CAPABILITY("role") ThreadRole {
+ public:
+  void assert_held() const HYADES_ASSERT_CAPABILITY(this) {}
 };
 
 /// Holds a mutex for as long as it lives, except between unlock() and lock().
