@@ -6,7 +6,6 @@
 
 namespace hyades::cli {
 
-inline constexpr int kPreviewWidth = 320;
 inline constexpr uint32_t kPreviewSamples = 32;
 
 /// Makes small pictures of `job`: `width` pixels wide, of the whole frame, with few samples,

@@ -29,7 +29,7 @@ class ByteBudget {
   /// What one holder holds of a budget; nothing any more once this is gone. Not thread-safe.
   class Share {
    public:
-    /// Of nothing, at first. The budget outlives it.
+    /// A share that holds nothing yet. The budget outlives it.
     Share(ByteBudget& budget, Owner owner) : budget_(budget), owner_(std::move(owner)) {}
     ~Share() { hold(0); }
     Share(const Share&) = delete;

@@ -29,7 +29,7 @@ constexpr milliseconds kLongestAskedPause{60'000};
 
 }  // namespace
 
-CoordinatorSession::CoordinatorSession(const WorkerContext& worker, WorkerId id,
+CoordinatorSession::CoordinatorSession(const WorkerContext& worker, WorkerIdentity id,
                                        const std::shared_ptr<grpc::Channel>& channel,
                                        WorkerToken token,
                                        std::function<void(const std::string&)> new_token)

@@ -11,7 +11,7 @@
 #include "farm/token_term.h"
 #include "worker/coordinator_link.h"
 #include "worker/worker_context.h"
-#include "worker/worker_id.h"
+#include "worker/worker_identity.h"
 #include "worker/worker_token.h"
 
 namespace hyades::worker {
@@ -21,7 +21,7 @@ namespace hyades::worker {
 class CoordinatorSession : private CoordinatorLink::Listener {
  public:
   /// `new_token` is told of a token that comes in place of the first.
-  CoordinatorSession(const WorkerContext& worker, WorkerId id,
+  CoordinatorSession(const WorkerContext& worker, WorkerIdentity id,
                      const std::shared_ptr<grpc::Channel>& channel, WorkerToken token,
                      std::function<void(const std::string&)> new_token);
 
@@ -57,7 +57,7 @@ class CoordinatorSession : private CoordinatorLink::Listener {
   void tell_expiry(TimePoint now);
 
   const WorkerContext worker_;
-  WorkerId id_;
+  WorkerIdentity id_;
   WorkerToken token_;
   const std::function<void(const std::string&)> new_token_;
   farm::Backoff backoff_{farm::kFirstReconnect, farm::kLongestReconnect};

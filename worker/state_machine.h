@@ -167,8 +167,8 @@ class StateMachine {
   struct Job {
     explicit Job(uint32_t seed) : rests(kFirstRest, kLongestJobRest, seed) {}
 
-    std::string spec;      ///< a v1::JobSpec as it travels, which takes a fraction of the memory
-    bool briefed = false;  ///< on the stream that is open
+    std::string spec;        ///< a v1::JobSpec as it travels, which takes a fraction of the memory
+    bool spec_sent = false;  ///< on the stream that is open
     bool has_files = false;
     bool fetching = false;
     bool told = false;  ///< the child knows it

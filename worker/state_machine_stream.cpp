@@ -31,7 +31,7 @@ void StateMachine::stream_opened(TimePoint now) {
   to_be_adopted_ = 0;
   hello_sent_ = now;
   unanswered_.clear();
-  for (auto& [id, job] : jobs_) job.briefed = false;
+  for (auto& [id, job] : jobs_) job.spec_sent = false;
   if (!worker_class_.empty()) send_hello();
 }
 
@@ -128,7 +128,7 @@ void StateMachine::add_job(const v1::JobBrief& brief) {
   if (!added) brief_bytes_ -= bytes_of(job);
   brief.spec().SerializeToString(&job.spec);
   brief_bytes_ += bytes_of(job);
-  job.briefed = true;
+  job.spec_sent = true;
   job.over = false;
   job.hopeless.clear();
   if (brief_bytes_ > options_.max_brief_bytes) forget_former_jobs();
@@ -141,7 +141,7 @@ void StateMachine::add_job(const v1::JobBrief& brief) {
 void StateMachine::forget_former_jobs() {
   for (auto it = jobs_.begin(); it != jobs_.end();) {
     const auto job = it++;
-    if (job->second.briefed) continue;
+    if (job->second.spec_sent) continue;
     job->second.over = true;
     forget_idle_job(job->first);
   }

@@ -11,7 +11,7 @@
 #include "farm/content_store.h"
 #include "farm/log.h"
 #include "farm/tags.h"
-#include "worker/worker_id.h"
+#include "worker/worker_identity.h"
 #include "worker/worker_loop.h"
 #include "worker/worker_token.h"
 
@@ -57,7 +57,7 @@ int run_worker(const WorkerOptions& options, const volatile std::sig_atomic_t& s
   move_old_files(options.cache, files);
   auto store = farm::ContentStore::open({files, options.cache_size});
   if (!store) return refuse(store.error());
-  auto id = WorkerId::take(options.cache, machine_name(host_name()));
+  auto id = WorkerIdentity::take(options.cache, machine_name(host_name()));
   if (!id) return refuse(id.error());
   WorkerToken token(options.coordinator.token_file, id->token_file());
   if (auto read = token.read(id->text()); !read) return refuse(read.error(), kWrongInput);

@@ -37,7 +37,7 @@ class FetchedFiles : public AssetFetcher::Listener {
   const WorkerContext worker_;
 };
 
-StateMachineOptions machine_options(const WorkerOptions& options, const WorkerId& id,
+StateMachineOptions machine_options(const WorkerOptions& options, const WorkerIdentity& id,
                                     const std::string& instance, const std::string& name) {
   StateMachineOptions machine;
   machine.worker_id = id.text();
@@ -56,7 +56,7 @@ StateMachineOptions machine_options(const WorkerOptions& options, const WorkerId
 /// Puts the parts together, and does for the state machine what it wants done.
 class Worker : private WorkerPorts {
  public:
-  Worker(const WorkerOptions& options, WorkerId id, const std::string& instance,
+  Worker(const WorkerOptions& options, WorkerIdentity id, const std::string& instance,
          const std::shared_ptr<grpc::Channel>& channel, WorkerToken token,
          farm::ContentStore& store)
       : options_(options),
@@ -119,7 +119,7 @@ class Worker : private WorkerPorts {
 
 }  // namespace
 
-int work(const WorkerOptions& options, WorkerId id, const std::string& instance,
+int work(const WorkerOptions& options, WorkerIdentity id, const std::string& instance,
          std::shared_ptr<grpc::Channel> channel, WorkerToken token, farm::ContentStore& store,
          const volatile std::sig_atomic_t& signals) {
   Worker worker(options, std::move(id), instance, channel, std::move(token), store);

@@ -6,7 +6,7 @@
 
 #include "farm/content_store.h"
 #include "worker/worker.h"
-#include "worker/worker_id.h"
+#include "worker/worker_identity.h"
 #include "worker/worker_token.h"
 
 namespace grpc {
@@ -19,7 +19,7 @@ namespace hyades::worker {
 std::string host_name();
 
 /// What run_worker does once all is opened. `instance` is random, of this process.
-int work(const WorkerOptions& options, WorkerId id, const std::string& instance,
+int work(const WorkerOptions& options, WorkerIdentity id, const std::string& instance,
          std::shared_ptr<grpc::Channel> channel, WorkerToken token, farm::ContentStore& store,
          const volatile std::sig_atomic_t& signals);
 

@@ -5,7 +5,7 @@
 
 namespace hyades::coordinator {
 
-/// Of "HOST:PORT"; an IPv6 address is written "[HOST]:PORT".
+/// The two parts of "HOST:PORT"; an IPv6 address is written "[HOST]:PORT".
 struct HostAndPort {
   std::string host;
   std::string port;

@@ -8,7 +8,7 @@ namespace hyades::coordinator {
 /// By what a worker is known: whose word it is that a film is right, or that a unit cannot be
 /// rendered.
 struct WorkerCredential {
-  /// The same for workers whose words count as one. Empty: nobody else has it, as on farms where
+  /// Equal for workers whose words count as one. Empty: nobody else has it, as on farms where
   /// whoever may work may do everything.
   std::string name{};
   /// Names the token or pool that the worker came by, which can bring any number of workers, also

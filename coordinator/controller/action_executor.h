@@ -14,7 +14,7 @@ class VideoMaker;
 class WorkerSessions;
 
 /// Has each action of the scheduler carried out by the part that it concerns.
-class ActionExecutor final : public Dispatcher::Executor {
+class ActionExecutor final : public Dispatcher::ActionHandler {
  public:
   ActionExecutor(ControllerContext& context, JobTable& jobs, WorkerTable& workers,
                  WorkerSessions& sessions, JobFilms& films, FrameProgress& frames,

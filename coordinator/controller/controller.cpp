@@ -59,7 +59,7 @@ struct Controller::Parts {
       : context(options, std::move(store), std::move(assets), incarnation, std::move(secret)),
         quotas(context.options.per_owner),
         dispatcher(context.mutex, scheduler_options(options, incarnation)) {
-    dispatcher.set_executor(executor);
+    dispatcher.set_action_handler(executor);
   }
 
   void tick() HYADES_EXCLUDES(state_lock);

@@ -9,12 +9,12 @@ Turn::Turn(Dispatcher& dispatcher) HYADES_NO_THREAD_SAFETY_ANALYSIS : dispatcher
 
 Turn::~Turn() HYADES_NO_THREAD_SAFETY_ANALYSIS {
   lock_.unlock();
-  for (const DeferredAction& action : deferred_) dispatcher_.executor_->carry_out(action);
+  for (const DeferredAction& action : deferred_) dispatcher_.handler_->carry_out(action);
 }
 
 void Turn::tell(const Event& event, Delivery* delivery) {
-  dispatcher_.executor_->act(dispatcher_.scheduler_.handle(event, std::chrono::steady_clock::now()),
-                             *this, delivery);
+  dispatcher_.handler_->act(dispatcher_.scheduler_.handle(event, std::chrono::steady_clock::now()),
+                            *this, delivery);
 }
 
 }  // namespace hyades::coordinator

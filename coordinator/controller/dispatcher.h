@@ -21,9 +21,9 @@ using DeferredAction =
 class Dispatcher {
  public:
   /// Does what the scheduler wants done.
-  class Executor {
+  class ActionHandler {
    public:
-    virtual ~Executor() = default;
+    virtual ~ActionHandler() = default;
     /// Does at once what others have to hear of in order; the rest is deferred by `turn`.
     /// `delivery` came with the event, if it is a result.
     virtual void act(const std::vector<Action>& actions, Turn& turn, Delivery* delivery)
@@ -35,13 +35,13 @@ class Dispatcher {
   Dispatcher(StateMutex& mutex, const SchedulerOptions& options)
       : mutex_(mutex), scheduler_(options) {}
   /// Before the first event.
-  void set_executor(Executor& executor) { executor_ = &executor; }
+  void set_action_handler(ActionHandler& handler) { handler_ = &handler; }
   const Scheduler& scheduler() const HYADES_REQUIRES(state_lock) { return scheduler_; }
 
  private:
   friend class Turn;
   StateMutex& mutex_;
-  Executor* executor_ = nullptr;
+  ActionHandler* handler_ = nullptr;
   Scheduler scheduler_ HYADES_GUARDED_BY(state_lock);
 };
 
@@ -57,7 +57,7 @@ class HYADES_SCOPED_CAPABILITY Turn {
   /// Tells the scheduler of an event and has its actions done. `delivery`: what came with it, where
   /// it is a result.
   void tell(const Event& event, Delivery* delivery = nullptr) HYADES_REQUIRES(state_lock);
-  /// Has the action carried out at the end of the turn; for Executor::act().
+  /// Has the action carried out at the end of the turn; for ActionHandler::act().
   void defer(DeferredAction action) { deferred_.push_back(std::move(action)); }
 
  private:

@@ -92,12 +92,12 @@ void DivergentWorkers::keep(RecordId record, const DivergentWorkerRecord& diverg
 }
 
 bool DivergentWorkers::store(const Found& found) {
-  core::Result<std::vector<JobFrames>> suspected{std::vector<JobFrames>()};
+  core::Result<std::vector<SuspectFrames>> suspected{std::vector<SuspectFrames>()};
   if (!found.worker.worker.empty())
     suspected = context_.store->mark_divergent(found.worker, found.since, found.line);
   if (!suspected) return false;
   Turn turn(dispatcher_);
-  for (JobFrames& job : *suspected) {
+  for (SuspectFrames& job : *suspected) {
     const uint64_t id = job.job;
     const ActiveJob* active = jobs_.find(id);
     if (active == nullptr) continue;
@@ -108,14 +108,14 @@ bool DivergentWorkers::store(const Found& found) {
 }
 
 /// Suspect frames of an open job begin again, some at a time; for the job's tasks.
-bool DivergentWorkers::suspect_frames(const JobFrames& suspected) {
+bool DivergentWorkers::suspect_frames(const SuspectFrames& suspected) {
   Turn turn(dispatcher_);
   ActiveJob* active = jobs_.find(suspected.job);
   if (active == nullptr || active->ending) return true;
   const size_t now = std::min(kSuspectedAtOnce, suspected.frames.size());
   const auto cut = suspected.frames.begin() + static_cast<ptrdiff_t>(now);
   if (cut != suspected.frames.end()) {
-    JobFrames rest{suspected.job, {cut, suspected.frames.end()}};
+    SuspectFrames rest{suspected.job, {cut, suspected.frames.end()}};
     context_.in_background(*active,
                            [this, rest = std::move(rest)] { return suspect_frames(rest); });
   }

@@ -39,7 +39,7 @@ class DivergentWorkers {
   };
   bool store_trust() HYADES_EXCLUDES(state_lock);
   bool store(const Found& found) HYADES_EXCLUDES(state_lock);
-  bool suspect_frames(const JobFrames& suspected) HYADES_EXCLUDES(state_lock);
+  bool suspect_frames(const SuspectFrames& suspected) HYADES_EXCLUDES(state_lock);
 
   ControllerContext& context_;
   Dispatcher& dispatcher_;

@@ -194,7 +194,7 @@ void FrameProgress::finish(ActiveJob& active, const FinishFrame& finish) {
 }
 
 void FrameProgress::hand_over(ActiveJob& active, const FinishFrame& finish) {
-  finisher_.add(active, finish, workers_.names_of(finish.unconfirmed));
+  finisher_.add(active, finish, workers_.stable_ids_of(finish.unconfirmed));
 }
 
 void FrameProgress::done(ActiveJob& active, const FrameDone& action) {

@@ -56,17 +56,17 @@ grpc::Status others_are_read() {
                            std::chrono::seconds(1));
 }
 
-void JobDocument::EndTurn::operator()(JobDocuments* documents) const {
+void JobDocument::EndReading::operator()(JobDocuments* documents) const {
   if (std::chrono::steady_clock::now() - begun > kLong) ::malloc_trim(0);
-  documents->end_turn(begun);
+  documents->end_reading(begun);
 }
 
 JobDocuments::Found JobDocuments::read(const v1::JobSpec& spec, std::chrono::milliseconds patience,
                                        const std::string& owner) {
   const Digest name = name_of(spec);
   if (Document kept = find(name)) return JobDocument(std::move(kept), nullptr);
-  if (!begin_turn(std::chrono::steady_clock::now() + patience, owner)) return std::nullopt;
-  JobDocument::Turn turn(this, {std::chrono::steady_clock::now()});
+  if (!begin_reading(std::chrono::steady_clock::now() + patience, owner)) return std::nullopt;
+  JobDocument::Reading reading(this, {std::chrono::steady_clock::now()});
   // Somebody may have read it meanwhile.
   if (Document kept = find(name)) return JobDocument(std::move(kept), nullptr);
   auto found = read_now(spec, assets_);
@@ -77,8 +77,8 @@ JobDocuments::Found JobDocuments::read(const v1::JobSpec& spec, std::chrono::mil
   if (!found) return found.error();
   const uint64_t bytes = memory_of(*found);
   auto document = std::make_shared<const farm::ReadJob>(std::move(*found));
-  if (keep({name, document, bytes})) turn.reset();
-  return JobDocument(std::move(document), std::move(turn));
+  if (keep({name, document, bytes})) reading.reset();
+  return JobDocument(std::move(document), std::move(reading));
 }
 
 JobDocuments::Found JobDocuments::read_stored(const std::string& spec,
@@ -113,11 +113,11 @@ bool JobDocuments::keep(Kept fresh) {
   return true;
 }
 
-bool JobDocuments::begin_turn(Time give_up, const std::string& owner) {
+bool JobDocuments::begin_reading(Time give_up, const std::string& owner) {
   const core::MutexLock lock(mutex_);
   const auto is_his = [&](const Waiting& other) { return other.owner == owner; };
-  const bool his_turn = reading_ && reads_for_ == owner;
-  if (!owner.empty() && (his_turn || std::any_of(waiting_.begin(), waiting_.end(), is_his))) {
+  const bool reads_his = reading_ && reads_for_ == owner;
+  if (!owner.empty() && (reads_his || std::any_of(waiting_.begin(), waiting_.end(), is_his))) {
     return false;
   }
   const uint64_t number = next_waiting_++;
@@ -130,10 +130,10 @@ bool JobDocuments::begin_turn(Time give_up, const std::string& owner) {
     if (!reading_ && next_reader(now) == number) break;
     if (now >= give_up) {
       leave();
-      turn_ended_.notify_all();
+      reading_ended_.notify_all();
       return false;
     }
-    turn_ended_.wait_until(mutex_, give_up);
+    reading_ended_.wait_until(mutex_, give_up);
   }
   leave();
   reading_ = true;
@@ -148,12 +148,12 @@ uint64_t JobDocuments::next_reader(Time now) const {
   return next->number;
 }
 
-void JobDocuments::end_turn(Time begun) {
+void JobDocuments::end_reading(Time begun) {
   const core::MutexLock lock(mutex_);
   const Time now = std::chrono::steady_clock::now();
   shares_.use(reads_for_, std::chrono::duration<double>(now - begun).count(), now);
   reading_ = false;
-  turn_ended_.notify_all();
+  reading_ended_.notify_all();
 }
 
 uint64_t JobDocuments::kept_bytes() const {

@@ -42,16 +42,16 @@ class JobDocument {
   friend class JobDocuments;
 
   /// Lets the next document be read, once the memory of this one is free.
-  struct EndTurn {
+  struct EndReading {
     std::chrono::steady_clock::time_point begun;
     void operator()(JobDocuments* documents) const;
   };
-  using Turn = std::unique_ptr<JobDocuments, EndTurn>;
+  using Reading = std::unique_ptr<JobDocuments, EndReading>;
 
-  JobDocument(std::shared_ptr<const farm::ReadJob> read, Turn turn)
-      : turn_(std::move(turn)), read_(std::move(read)) {}
+  JobDocument(std::shared_ptr<const farm::ReadJob> read, Reading reading)
+      : reading_(std::move(reading)), read_(std::move(read)) {}
 
-  Turn turn_;  ///< of one that is too long to be kept; ends after `read_`
+  Reading reading_;  ///< of one that is too long to be kept; ends after `read_`
   std::shared_ptr<const farm::ReadJob> read_;
 };
 
@@ -84,7 +84,7 @@ class JobDocuments {
   uint64_t times_read() const HYADES_EXCLUDES(mutex_);
 
  private:
-  friend struct JobDocument::EndTurn;
+  friend struct JobDocument::EndReading;
   using Time = std::chrono::steady_clock::time_point;
   using Document = std::shared_ptr<const farm::ReadJob>;
   struct Kept {
@@ -95,20 +95,20 @@ class JobDocuments {
 
   Document find(const Digest& name) HYADES_EXCLUDES(mutex_);
   bool keep(Kept fresh) HYADES_EXCLUDES(mutex_);
-  bool begin_turn(Time give_up, const std::string& owner) HYADES_EXCLUDES(mutex_);
-  void end_turn(Time begun) HYADES_EXCLUDES(mutex_);
+  bool begin_reading(Time give_up, const std::string& owner) HYADES_EXCLUDES(mutex_);
+  void end_reading(Time begun) HYADES_EXCLUDES(mutex_);
   uint64_t next_reader(Time now) const HYADES_REQUIRES(mutex_);
 
   farm::ContentStore& assets_;
   const uint64_t most_bytes_;
   mutable core::Mutex mutex_;
-  core::CondVar turn_ended_;
+  core::CondVar reading_ended_;
   std::list<Kept> kept_ HYADES_GUARDED_BY(mutex_);  ///< those that were used last are first
   std::map<Digest, std::list<Kept>::iterator> places_ HYADES_GUARDED_BY(mutex_);
   uint64_t kept_bytes_ HYADES_GUARDED_BY(mutex_) = 0;
   uint64_t times_read_ HYADES_GUARDED_BY(mutex_) = 0;
   bool reading_ HYADES_GUARDED_BY(mutex_) = false;
-  std::string reads_for_ HYADES_GUARDED_BY(mutex_);  ///< the owner whose turn it is
+  std::string reads_for_ HYADES_GUARDED_BY(mutex_);  ///< the owner that a document is read for
   struct Waiting {
     uint64_t number = 0;
     std::string owner;

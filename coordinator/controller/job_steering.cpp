@@ -121,7 +121,7 @@ grpc::Status JobSteering::cancel_waiting(uint64_t id, v1::Job& now) {
   auto stored = context_.store->summary(id);
   if (!stored) return farm::unavailable(stored.error());
   if (!one || !waits() || !*stored || has_ended((*stored)->state)) {
-    return is_taken_up(id);
+    return being_recovered(id);
   }
   (*stored)->state = StoredState::cancelled;
   (*stored)->ended_ms = core::wall_ms();
@@ -134,7 +134,7 @@ grpc::Status JobSteering::cancel_waiting(uint64_t id, v1::Job& now) {
   return grpc::Status::OK;
 }
 
-grpc::Status is_taken_up(uint64_t id) {
+grpc::Status being_recovered(uint64_t id) {
   return farm::retry_later(grpc::StatusCode::UNAVAILABLE,
                            fmt::format("job {} is just being taken up", id),
                            std::chrono::seconds(1));
@@ -147,7 +147,7 @@ grpc::Status why_not_open(JobStore& store, uint64_t id) {
     return {grpc::StatusCode::FAILED_PRECONDITION, fmt::format("job {} has ended", id)};
   }
   const std::string& reason = (*stored)->reason;
-  if (reason.empty()) return is_taken_up(id);
+  if (reason.empty()) return being_recovered(id);
   // That was tried, and may not come to pass for days: whoever asks is told why, and waits for none
   // of it.
   return {grpc::StatusCode::FAILED_PRECONDITION, fmt::format("job {} {}", id, reason)};

@@ -22,7 +22,7 @@ grpc::Status check_priority(int priority);
 /// ended or could not be recovered yet, UNAVAILABLE for one that is being recovered.
 grpc::Status why_not_open(JobStore& store, uint64_t job);
 /// UNAVAILABLE, as somebody is just recovering the job.
-grpc::Status is_taken_up(uint64_t job);
+grpc::Status being_recovered(uint64_t job);
 
 /// What clients want of open jobs. Each function calls `then` exactly once, perhaps by another
 /// thread and at the latest when the controller stops: when the change is stored, or after half a

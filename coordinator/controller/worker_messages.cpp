@@ -175,7 +175,7 @@ void WorkerSessions::on_leaving(WorkerSession& session, const v1::Leaving& leavi
   turn.tell(WorkerBarred{session.id, true});
 }
 
-struct WorkerSessions::Film {
+struct WorkerSessions::PendingResult {
   WorkerId worker{};
   std::shared_ptr<WorkerLink> link;
   v1::UnitResult result;
@@ -188,18 +188,18 @@ struct WorkerSessions::Film {
 /// Decides by what is known without unpacking the film, and has it unpacked.
 void WorkerSessions::on_result(WorkerId worker, const WorkerLink* link, v1::UnitResult result) {
   context_.meters->film_bytes(result.film().size());
-  const auto film = std::make_shared<Film>();
-  film->worker = worker;
-  film->came = std::chrono::steady_clock::now();
+  const auto pending = std::make_shared<PendingResult>();
+  pending->worker = worker;
+  pending->came = std::chrono::steady_clock::now();
   std::optional<ExpectedFilm> expected;
   {
     const StateLock lock(context_.mutex);
     WorkerSession* session = workers_.find(worker, link);
     if (session == nullptr) return;
-    session->heard = film->came;
+    session->heard = pending->came;
     session->heard_ms = core::wall_ms();
-    film->link = session->link;
-    film->owner = session->joined_with.empty() ? session->owner : session->joined_with;
+    pending->link = session->link;
+    pending->owner = session->joined_with.empty() ? session->owner : session->joined_with;
     if (const ActiveJob* active = jobs_.find(result.job())) {
       expected = {active->layout, active->region, active->key, session->hello.worker_id(),
                   session->hello.worker_class()};
@@ -207,40 +207,40 @@ void WorkerSessions::on_result(WorkerId worker, const WorkerLink* link, v1::Unit
   }
   std::optional<ResultRefusal> refusal = check_claim(result, expected, context_.proofs);
   const bool large = core::memory_to_decode(std::as_bytes(std::span(result.film()))) > kLargeFilm;
-  if (expected) film->expected = std::move(*expected);
-  film->result = std::move(result);
-  if (!refusal) refusal = have_unpacked(film, large ? large_unpackers_ : unpackers_);
+  if (expected) pending->expected = std::move(*expected);
+  pending->result = std::move(result);
+  if (!refusal) refusal = have_unpacked(pending, large ? large_unpackers_ : unpackers_);
   if (!refusal) return;
   Turn turn(dispatcher_);
   WorkerSession* session = workers_.find(worker, link);
   if (session == nullptr) return;
-  reject(*session, film->result, *refusal, turn);
-  want(*session, film->result.want(), turn);
+  reject(*session, pending->result, *refusal, turn);
+  want(*session, pending->result.want(), turn);
 }
 
-std::optional<ResultRefusal> WorkerSessions::have_unpacked(const std::shared_ptr<Film>& film,
-                                                           farm::ThreadPool& pool) {
+std::optional<ResultRefusal> WorkerSessions::have_unpacked(
+    const std::shared_ptr<PendingResult>& pending, farm::ThreadPool& pool) {
   const StateLock lock(context_.mutex);
-  if (auto later = not_now(film->result)) return later;
-  film->packed.emplace(packed_, farm::ByteBudget::Owner{film->owner});
-  if (film->packed->try_hold(film->result.film().size()) &&
-      pool.submit([this, film] { unpack(film); }, film->owner)) {
+  if (auto later = not_now(pending->result)) return later;
+  pending->packed.emplace(packed_, farm::ByteBudget::Owner{pending->owner});
+  if (pending->packed->try_hold(pending->result.film().size()) &&
+      pool.submit([this, pending] { unpack(pending); }, pending->owner)) {
     return std::nullopt;
   }
-  film->packed.reset();
+  pending->packed.reset();
   return too_many_wait();
 }
 
-void WorkerSessions::unpack(const std::shared_ptr<Film>& film) {
-  const v1::UnitResult& result = film->result;
-  std::variant<Delivery, ResultRefusal> checked = check_result(result, film->expected);
-  film->packed.reset();
+void WorkerSessions::unpack(const std::shared_ptr<PendingResult>& pending) {
+  const v1::UnitResult& result = pending->result;
+  std::variant<Delivery, ResultRefusal> checked = check_result(result, pending->expected);
+  pending->packed.reset();
   Turn turn(dispatcher_);
-  WorkerSession* session = workers_.find(film->worker, film->link.get());
+  WorkerSession* session = workers_.find(pending->worker, pending->link.get());
   if (session == nullptr) return;
   std::optional<ResultRefusal> refusal;
   if (auto* delivery = std::get_if<Delivery>(&checked)) {
-    delivery->rendered.came = film->came;
+    delivery->rendered.came = pending->came;
     refusal = deliver(*session, result, *delivery, turn);
   } else {
     refusal = std::get<ResultRefusal>(std::move(checked));

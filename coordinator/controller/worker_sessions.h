@@ -103,12 +103,12 @@ class WorkerSessions {
   void on_leaving(WorkerSession& session, const v1::Leaving& leaving, Turn& turn)
       HYADES_REQUIRES(state_lock);
   /// A film that waits to be unpacked, or is.
-  struct Film;
+  struct PendingResult;
   void on_result(WorkerId worker, const WorkerLink* link, v1::UnitResult result)
       HYADES_EXCLUDES(state_lock);
-  void unpack(const std::shared_ptr<Film>& film) HYADES_EXCLUDES(state_lock);
+  void unpack(const std::shared_ptr<PendingResult>& pending) HYADES_EXCLUDES(state_lock);
   std::optional<ResultRefusal> not_now(const v1::UnitResult& result) HYADES_REQUIRES(state_lock);
-  std::optional<ResultRefusal> have_unpacked(const std::shared_ptr<Film>& film,
+  std::optional<ResultRefusal> have_unpacked(const std::shared_ptr<PendingResult>& pending,
                                              farm::ThreadPool& pool) HYADES_EXCLUDES(state_lock);
   void reject(WorkerSession& session, const v1::UnitResult& result, const ResultRefusal& refusal,
               Turn& turn) HYADES_REQUIRES(state_lock);

@@ -104,7 +104,7 @@ void WorkerTable::forget(WorkerId worker, Turn& turn) {
   turn.tell(WorkerForgotten{worker});
 }
 
-std::vector<std::string> WorkerTable::names_of(const std::vector<WorkerId>& workers) const {
+std::vector<std::string> WorkerTable::stable_ids_of(const std::vector<WorkerId>& workers) const {
   std::vector<std::string> names;
   for (const WorkerId worker : workers) {
     const WorkerSession* session = find(worker);

@@ -99,8 +99,8 @@ class WorkerTable {
   size_t joined_by(const std::string& token) const HYADES_REQUIRES(state_lock);
   /// Drops the worker's session: nobody will come under this number any more.
   void forget(WorkerId worker, Turn& turn) HYADES_REQUIRES(state_lock);
-  /// What workers call themselves; nothing for those who are not known any more.
-  std::vector<std::string> names_of(const std::vector<WorkerId>& workers) const
+  /// The ids that workers keep over restarts; nothing for those who are not known any more.
+  std::vector<std::string> stable_ids_of(const std::vector<WorkerId>& workers) const
       HYADES_REQUIRES(state_lock);
 
   /// Updates how fast workers are; to be called from time to time.

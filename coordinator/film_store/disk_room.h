@@ -12,7 +12,7 @@ namespace hyades::coordinator {
 /// a - b; 0 where b is larger.
 constexpr uint64_t surplus(uint64_t a, uint64_t b) { return a > b ? a - b : 0; }
 
-/// Of `room` bytes those that one owner's upload may have beside what all uploads are expected to
+/// The bytes of `room` that one owner's upload may have beside what all uploads are expected to
 /// bring, by their owners: his own count, of each other's at most half of what is left then, so
 /// that nobody takes all by announcing it.
 uint64_t room_beside(uint64_t room, const std::map<std::string, uint64_t>& expected,

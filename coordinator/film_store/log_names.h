@@ -10,7 +10,7 @@ namespace hyades::coordinator {
 inline constexpr const char* kGuardName = "log.key";
 inline constexpr const char* kLockName = "log.lock";
 inline constexpr const char* kUnfinishedSuffix = ".tmp";
-/// Of films that are not in memory (films_aside.h). They are not the log's.
+/// The ending of files of films that are not in memory (films_aside.h). They are not the log's.
 inline constexpr const char* kAsideSuffix = ".aside";
 
 /// What the name of a segment file says.

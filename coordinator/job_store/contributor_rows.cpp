@@ -78,10 +78,11 @@ core::Result<bool> find_frames_of(sqlite3* db, const std::string& worker, uint64
   return looked == limit;
 }
 
-core::Result<std::vector<JobFrames>> make_doubtful(sqlite3* db, const std::string& worker,
-                                                   uint64_t since, std::vector<FrameOfJob> frames) {
+core::Result<std::vector<SuspectFrames>> make_doubtful(sqlite3* db, const std::string& worker,
+                                                       uint64_t since,
+                                                       std::vector<FrameOfJob> frames) {
   std::sort(frames.begin(), frames.end());
-  std::vector<JobFrames> jobs;
+  std::vector<SuspectFrames> jobs;
   for (const FrameOfJob& one : frames) {
     Query row(db, "SELECT moment, workers FROM parts WHERE job = ?1 AND frame = ?2" + kJobIsThere);
     row.bind(number(one.job)).bind(int64_t{one.frame});

@@ -35,8 +35,9 @@ core::Result<bool> find_frames_of(sqlite3* db, const std::string& worker, uint64
                                   FrameOfJob& last, uint32_t limit, std::vector<FrameOfJob>& found);
 /// Makes those of `frames` doubtful of which that still holds, and returns those that were not so
 /// before; within a transaction.
-core::Result<std::vector<JobFrames>> make_doubtful(sqlite3* db, const std::string& worker,
-                                                   uint64_t since, std::vector<FrameOfJob> frames);
+core::Result<std::vector<SuspectFrames>> make_doubtful(sqlite3* db, const std::string& worker,
+                                                       uint64_t since,
+                                                       std::vector<FrameOfJob> frames);
 
 /// JobStore::trust() and trusted().
 core::Status store_trust(sqlite3* db, const std::vector<StoredTrust>& workers);

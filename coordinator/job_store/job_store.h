@@ -76,7 +76,7 @@ struct StoredTrust {
 };
 
 /// Finished frames of a job, in order.
-struct JobFrames {
+struct SuspectFrames {
   uint64_t job = 0;
   std::vector<int32_t> frames;
 };
@@ -225,9 +225,9 @@ class JobStore {
   /// have ended, that were finished after `since` and that it had a part in, or may have had, are
   /// doubtful from now on. Each job's log gets `line` (its text with the frames behind it). All of
   /// it at once, or nothing. Returns the frames that were not doubtful before.
-  virtual core::Result<std::vector<JobFrames>> mark_divergent(const StoredQuarantine& worker,
-                                                              uint64_t since,
-                                                              const StoredLine& line) = 0;
+  virtual core::Result<std::vector<SuspectFrames>> mark_divergent(const StoredQuarantine& worker,
+                                                                  uint64_t since,
+                                                                  const StoredLine& line) = 0;
   /// Frames of the job that are doubtful, in order, at most `limit`.
   virtual core::Result<std::vector<int32_t>> doubtful(uint64_t job, uint32_t limit) = 0;
   /// Frames of the job that are black, in order, at most `limit`.

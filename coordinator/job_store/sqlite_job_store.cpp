@@ -328,22 +328,22 @@ class SqliteJobStore final : public JobStore {
     return read_trust(db_.get());
   }
 
-  core::Result<std::vector<JobFrames>> mark_divergent(const StoredQuarantine& worker,
-                                                      uint64_t since,
-                                                      const StoredLine& line) override {
+  core::Result<std::vector<SuspectFrames>> mark_divergent(const StoredQuarantine& worker,
+                                                          uint64_t since,
+                                                          const StoredLine& line) override {
     std::vector<FrameOfJob> found;
     const LookingThrough frames(*this);
     if (core::Status looked = look_through(worker.worker, since, found); !looked) {
       return looked.error();
     }
-    std::vector<JobFrames> suspects;
+    std::vector<SuspectFrames> suspects;
     const core::Status stored = at_once([&]() HYADES_REQUIRES(mutex_) -> core::Status {
       if (core::Status kept = put_quarantine(worker); !kept) return kept;
       found.insert(found.end(), stored_meanwhile_.begin(), stored_meanwhile_.end());
       auto jobs = make_doubtful(db_.get(), worker.worker, since, std::move(found));
       if (!jobs) return jobs.error();
       suspects = std::move(*jobs);
-      for (const JobFrames& job : suspects) {
+      for (const SuspectFrames& job : suspects) {
         StoredLine told = line;
         told.text += tell_frames(job.frames);
         if (core::Status added = lines_.add(db_.get(), job.job, {told}); !added) return added;

@@ -20,19 +20,19 @@ constexpr size_t kMostAnswers = 5;
 constexpr size_t kManyFrames = 1000;
 constexpr Duration kRest = std::chrono::milliseconds(100);
 
-/// How many voices there are among those opinions that `counts`.
+/// How many witnesses there are among those opinions that `counts`.
 template <class Counts>
-size_t voices(const std::vector<Opinion>& opinions, Counts counts) {
-  std::set<Voice> heard;
+size_t witnesses(const std::vector<Opinion>& opinions, Counts counts) {
+  std::set<Witness> heard;
   for (const Opinion& o : opinions) {
-    if (counts(o)) heard.insert(o.voice);
+    if (counts(o)) heard.insert(o.witness);
   }
   return heard.size();
 }
 
 }  // namespace
 
-bool Conflicts::weigh(ScheduledJob& job, FrameSlot& slot, const Extent& extent, Voice voice,
+bool Conflicts::weigh(ScheduledJob& job, FrameSlot& slot, const Extent& extent, Witness witness,
                       const ResultArrived& e) {
   FrameLedger& ledger = *slot.ledger;
   const HeldRecord held = *ledger.find_held(extent);
@@ -41,14 +41,14 @@ bool Conflicts::weigh(ScheduledJob& job, FrameSlot& slot, const Extent& extent, 
     if (held.digest == e.digest) {
       // Who sends the same again, under whatever name, agrees with nobody, and who it was before a
       // restart is not known.
-      if (held.worker != WorkerId{} && held.voice != voice) {
+      if (held.worker != WorkerId{} && held.witness != witness) {
         ledger.verify(extent);
         confirm(job, slot, held.worker);
         confirm(job, slot, e.worker);
       }
       return false;
     }
-    dispute = &ledger.open_dispute(extent, {held.worker, held.digest, held.voice});
+    dispute = &ledger.open_dispute(extent, {held.worker, held.digest, held.witness});
   }
   if (held.digest != e.digest) {
     dispute->differs = true;
@@ -58,14 +58,14 @@ bool Conflicts::weigh(ScheduledJob& job, FrameSlot& slot, const Extent& extent, 
   if (std::none_of(opinions.begin(), opinions.end(),
                    [&](const Opinion& o) { return o.worker == e.worker; })) {
     if (held.digest != e.digest) step_.say(Conflict{e.job, e.unit, held.worker, e.worker});
-    opinions.push_back({e.worker, e.digest, voice});
-    const size_t agree = voices(
+    opinions.push_back({e.worker, e.digest, witness});
+    const size_t agree = witnesses(
         opinions, [&](const Opinion& o) { return o.worker != WorkerId{} && o.digest == e.digest; });
     if (agree > 1) {
       decide(job, slot, Dispute(*dispute), e);
       return held.digest != e.digest;
     }
-    if (voices(opinions, [](const Opinion&) { return true; }) >= kMostAnswers) {
+    if (witnesses(opinions, [](const Opinion&) { return true; }) >= kMostAnswers) {
       const core::PixelRect tile = job.grid.tile(extent.tile);
       frames_.fail_or_leave(
           job, slot, e.worker,
@@ -79,7 +79,7 @@ bool Conflicts::weigh(ScheduledJob& job, FrameSlot& slot, const Extent& extent, 
   return false;
 }
 
-/// Two voices agree, of which that of `e` is the second: the others are wrong.
+/// Two witnesses agree, of which that of `e` is the second: the others are wrong.
 void Conflicts::decide(ScheduledJob& job, FrameSlot& slot, const Dispute& dispute,
                        const ResultArrived& e) {
   FrameLedger& ledger = *slot.ledger;

@@ -22,9 +22,10 @@ class Conflicts {
         frames_(frames),
         workers_(workers) {}
 
-  /// Compares one more rendering of a unit that is held, by a worker of this voice, with those that
-  /// came before. True where it is now known that this one is right and what is held is wrong.
-  bool weigh(ScheduledJob& job, FrameSlot& slot, const Extent& extent, Voice voice,
+  /// Compares one more rendering of a unit that is held, of which `witness` is the witness, with
+  /// those that came before. True where it is now known that this one is right and what is held is
+  /// wrong.
+  bool weigh(ScheduledJob& job, FrameSlot& slot, const Extent& extent, Witness witness,
              const ResultArrived& result);
   /// The job has been restored: films of nobody are suspect where a dispute was open then.
   void restored(ScheduledJob& job, bool disputed);

@@ -6,12 +6,12 @@
 
 namespace hyades::coordinator {
 
-void FailedUnits::blame(const Extent& e, WorkerId worker, Voice voice) {
+void FailedUnits::blame(const Extent& e, WorkerId worker, Witness witness) {
   const auto [at, fresh] = units_.try_emplace(key(e), Unit{groups_.end(), {}, 0, 0});
   Unit& unit = at->second;
   ++unit.failures;
-  if (std::find(unit.voices.begin(), unit.voices.end(), voice) == unit.voices.end()) {
-    unit.voices.push_back(voice);
+  if (std::find(unit.witnesses.begin(), unit.witnesses.end(), witness) == unit.witnesses.end()) {
+    unit.witnesses.push_back(witness);
   }
   std::vector<WorkerId> workers = fresh ? std::vector<WorkerId>() : unit.group->first;
   const auto place = std::lower_bound(workers.begin(), workers.end(), worker);
@@ -29,9 +29,9 @@ const std::vector<WorkerId>& FailedUnits::workers(const Extent& e) const {
   return found == units_.end() ? kNobody : found->second.group->first;
 }
 
-std::vector<Voice> FailedUnits::voices(const Extent& e) const {
+std::vector<Witness> FailedUnits::witnesses(const Extent& e) const {
   const auto found = units_.find(key(e));
-  return found == units_.end() ? std::vector<Voice>() : found->second.voices;
+  return found == units_.end() ? std::vector<Witness>() : found->second.witnesses;
 }
 
 size_t FailedUnits::failures(const Extent& e) const {

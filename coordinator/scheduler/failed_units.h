@@ -21,20 +21,20 @@ struct Extent {
 };
 
 /// Whether a worker may try a unit that has failed with these workers (sorted, each once), and
-/// about which these voices have said what they think.
-using MayTry = std::function<bool(const std::vector<WorkerId>&, const std::vector<Voice>&)>;
+/// about which these witnesses have said what they think.
+using MayTry = std::function<bool(const std::vector<WorkerId>&, const std::vector<Witness>&)>;
 
 /// The units of a frame that have failed: with whom, and which of them wait for another try. A
 /// worker can have very many fail at once, so that no step walks through all of them: those that
 /// failed with the same workers are one group, as the same others may try them.
 class FailedUnits {
  public:
-  /// The worker, which has this voice, could not render the unit, which does not wait.
-  void blame(const Extent& e, WorkerId worker, Voice voice);
+  /// The worker, of this witness, could not render the unit, which does not wait.
+  void blame(const Extent& e, WorkerId worker, Witness witness);
   /// With whom the unit has failed, sorted, each once.
   const std::vector<WorkerId>& workers(const Extent& e) const;
-  /// The voices of those with whom it has failed, each once.
-  std::vector<Voice> voices(const Extent& e) const;
+  /// The witnesses of those with whom it has failed, each once.
+  std::vector<Witness> witnesses(const Extent& e) const;
   /// How often it has failed.
   size_t failures(const Extent& e) const;
   /// Forgets that a unit, which does not wait, has failed; says with whom it had.
@@ -72,7 +72,7 @@ class FailedUnits {
   using Groups = std::map<std::vector<WorkerId>, Group>;
   struct Unit {
     Groups::iterator group;
-    std::vector<Voice> voices;  ///< each once
+    std::vector<Witness> witnesses;  ///< each once
     size_t failures = 0;
     uint64_t serial = 0;  ///< by which it waits; 0: it does not
   };

@@ -11,10 +11,10 @@
 namespace hyades::coordinator {
 namespace {
 
-std::vector<Voice> voices_of(const Dispute& dispute) {
-  std::vector<Voice> voices;
-  for (const Opinion& o : dispute.opinions) voices.push_back(o.voice);
-  return voices;
+std::vector<Witness> witnesses_of(const Dispute& dispute) {
+  std::vector<Witness> witnesses;
+  for (const Opinion& o : dispute.opinions) witnesses.push_back(o.witness);
+  return witnesses;
 }
 
 }  // namespace
@@ -30,10 +30,10 @@ Dispute* FrameLedger::find_dispute(const Extent& e) {
   return it == disputes_.end() ? nullptr : &*it;
 }
 
-std::vector<Voice> FrameLedger::heard(const Extent& e) const {
+std::vector<Witness> FrameLedger::heard(const Extent& e) const {
   const auto it = std::find_if(disputes_.begin(), disputes_.end(),
                                [&](const Dispute& d) { return d.extent == e; });
-  return it == disputes_.end() ? std::vector<Voice>() : voices_of(*it);
+  return it == disputes_.end() ? std::vector<Witness>() : witnesses_of(*it);
 }
 
 Dispute& FrameLedger::open_dispute(const Extent& e, const Opinion& first) {
@@ -44,14 +44,14 @@ void FrameLedger::end_dispute(const Extent& e) {
   std::erase_if(disputes_, [&](const Dispute& d) { return d.extent == e; });
 }
 
-std::optional<Extent> FrameLedger::next_check(Voice voice, const MayTry& may_try) const {
+std::optional<Extent> FrameLedger::next_check(Witness witness, const MayTry& may_try) const {
   for (const Dispute& d : disputes_) {
     const bool known = std::any_of(d.opinions.begin(), d.opinions.end(),
-                                   [&](const Opinion& o) { return o.voice == voice; });
+                                   [&](const Opinion& o) { return o.witness == witness; });
     if (known || being_checked(d.extent)) continue;
     if (!failed_.contains(d.extent)) return d.extent;
     // Those who have said what they think are no help: who failed it may be the only one left.
-    if (may_try(failed_.workers(d.extent), voices_of(d))) return d.extent;
+    if (may_try(failed_.workers(d.extent), witnesses_of(d))) return d.extent;
   }
   return std::nullopt;
 }

@@ -77,10 +77,10 @@ bool FrameLedger::all_free(const Extent& e) const {
   return BatchMap::count_free(held_, leased_, e.tile, e.batches) == e.batches.count;
 }
 
-bool FrameLedger::may_assign(const Extent& e, Voice voice) const {
-  const std::vector<Voice> others = heard(e);
+bool FrameLedger::may_assign(const Extent& e, Witness witness) const {
+  const std::vector<Witness> others = heard(e);
   if (others.empty()) return is_planned(e) && all_free(e);
-  return !being_checked(e) && std::find(others.begin(), others.end(), voice) == others.end();
+  return !being_checked(e) && std::find(others.begin(), others.end(), witness) == others.end();
 }
 
 void FrameLedger::lease_bits(const Extent& e) {

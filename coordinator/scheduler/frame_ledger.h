@@ -37,19 +37,19 @@ struct HeldRecord {
   Digest digest{};
   WorkerId worker{};
   RecordId pending{};     ///< 0 once durable
-  Voice voice{};          ///< of the worker
-  bool verified = false;  ///< another voice rendered the same bits
+  Witness witness{};      ///< of the worker
+  bool verified = false;  ///< another witness rendered the same bits
 };
 
 /// What a worker rendered a unit to.
 struct Opinion {
   WorkerId worker{};  ///< 0: not known any more; it counts for nobody
   Digest digest{};
-  Voice voice{};  ///< of the worker
+  Witness witness{};  ///< of the worker
 };
 
 /// A held unit of which two renderings differ, or that is to be rendered twice in any case, until
-/// two voices agree.
+/// two witnesses agree.
 struct Dispute {
   Extent extent;
   std::vector<Opinion> opinions;
@@ -165,9 +165,9 @@ class FrameLedger {
   /// Whether a unit has failed and waits for somebody who may try it.
   bool any_retry() const { return failed_.any_waits(); }
 
-  /// Whether the extent can be assigned to a worker with this voice that has it already: all of it
-  /// is free, or another voice has to render it too and nobody does.
-  bool may_assign(const Extent& e, Voice voice) const;
+  /// Whether the extent can be assigned to a worker of this witness that has it already: all of it
+  /// is free, or another witness has to render it too and nobody does.
+  bool may_assign(const Extent& e, Witness witness) const;
   /// The holder renders the extent from now on, whose batches are free or disputed. `serial` is one
   /// that no assignment had before.
   Assignment& assign(const Extent& e, const Holder& holder, uint64_t serial);
@@ -182,8 +182,10 @@ class FrameLedger {
 
   // Blame.
 
-  /// The worker, which has this voice, could not render the unit.
-  void blame(const Extent& e, WorkerId worker, Voice voice) { failed_.blame(e, worker, voice); }
+  /// The worker, of this witness, could not render the unit.
+  void blame(const Extent& e, WorkerId worker, Witness witness) {
+    failed_.blame(e, worker, witness);
+  }
   /// The units that have failed.
   const FailedUnits& failed() const { return failed_; }
   /// The unit has been rendered after all: who had failed it. They are forgotten here.
@@ -195,25 +197,25 @@ class FrameLedger {
   bool settled() const { return disputes_.empty() && voiding_.empty(); }
   /// How many units there are of which two renderings differ.
   size_t disputes() const;
-  /// How many units wait for another voice to render them too, and nobody differs.
+  /// How many units wait for another witness to render them too, and nobody differs.
   size_t unconfirmed_checks() const { return disputes_.size() - disputes(); }
   /// Whether the films of some tile are about to be void.
   bool any_suspect() const { return !voiding_.empty(); }
   /// The dispute about exactly this extent; null where there is none.
   Dispute* find_dispute(const Extent& e);
-  /// The voices that rendered exactly this extent, where others have to agree on it.
-  std::vector<Voice> heard(const Extent& e) const;
-  /// Two voices have to agree on the extent, which is held; `first` is the one that is held.
+  /// The witnesses that rendered exactly this extent, where others have to agree on it.
+  std::vector<Witness> heard(const Extent& e) const;
+  /// Two witnesses have to agree on the extent, which is held; `first` is the one that is held.
   Dispute& open_dispute(const Extent& e, const Opinion& first);
   void end_dispute(const Extent& e);
-  /// Whether so many units wait for another voice that no new ones are to be had.
+  /// Whether so many units wait for another witness that no new ones are to be had.
   bool waits_for_checks() const { return disputes_.size() >= kMostToCheck; }
-  /// A disputed unit that nobody renders, for a worker whose voice was not heard about it and that
-  /// may try it.
-  std::optional<Extent> next_check(Voice voice, const MayTry& may_try) const;
+  /// A disputed unit that nobody renders, for a worker whose witness was not heard about it and
+  /// that may try it.
+  std::optional<Extent> next_check(Witness witness, const MayTry& may_try) const;
   /// Disputed units that nobody renders.
   uint64_t waiting_checks() const;
-  /// Another voice agreed on the film that is held.
+  /// Another witness agreed on the film that is held.
   void verify(const Extent& e);
   /// Tiles that hold films of this worker on which no other agreed, in order.
   std::vector<uint32_t> unverified_tiles(WorkerId worker) const;
@@ -232,7 +234,7 @@ class FrameLedger {
   std::string audit() const;
 
  private:
-  /// Units that wait for another voice, of one frame; it takes no new ones then.
+  /// Units that wait for another witness, of one frame; it takes no new ones then.
   static constexpr size_t kMostToCheck = 64;
 
   /// How far a tile is, of a job that judges its tiles.

@@ -42,7 +42,7 @@ uint32_t pass_of(const FrameLedger& ledger, uint32_t tiles) {
 /// A MayTry of the worker, which lives no longer than what it is made of.
 auto judge_of(const ScheduledWorkers& workers, const ScheduledJob& job, WorkerId id,
               const Worker& worker) {
-  return [&, id](const std::vector<WorkerId>& blamed, const std::vector<Voice>& heard) {
+  return [&, id](const std::vector<WorkerId>& blamed, const std::vector<Witness>& heard) {
     return workers.may_try(job, id, worker, blamed, heard);
   };
 }
@@ -288,7 +288,7 @@ bool Granting::has_units_for(const ScheduledJob& job, const FrameSlot& slot, Wor
   const auto judge = judge_of(workers_, job, id, worker);
   const MayTry allowed = std::ref(judge);
   return slot.ledger->has_work(allowed) ||
-         slot.ledger->next_check(worker.voice, allowed).has_value();
+         slot.ledger->next_check(worker.witness, allowed).has_value();
 }
 
 /// Of a progressive job, the frame in the lowest pass; `begun`: of those that have begun.
@@ -464,7 +464,7 @@ bool Granting::waits_for_film(const ScheduledJob& job) const {
 /// Gives the worker a disputed unit that it has not rendered.
 bool Granting::grant_check(const FramePlace& place, WorkerId id, Worker& worker,
                            const MayTry& may_try) {
-  const auto extent = place.frame().ledger->next_check(worker.voice, may_try);
+  const auto extent = place.frame().ledger->next_check(worker.witness, may_try);
   if (!extent) return false;
   copies_.note(place, leases_.assign(place.frame(), *extent, id), worker.worker_class);
   --worker.wanted;

@@ -80,8 +80,8 @@ bool HedgedCopies::grant_of(Units& units, size_t holders, WorkerId id, Worker& w
     const ScheduledJob& job = *place.job;
     const FrameLedger& ledger = *place.frame().ledger;
     // What is checked is for those who were not heard.
-    const std::vector<Voice> heard = ledger.heard(candidate.extent);
-    if (std::find(heard.begin(), heard.end(), worker.voice) != heard.end()) continue;
+    const std::vector<Witness> heard = ledger.heard(candidate.extent);
+    if (std::find(heard.begin(), heard.end(), worker.witness) != heard.end()) continue;
     if (!workers_.may_try(job, id, worker, ledger.failed().workers(candidate.extent), heard))
       continue;
     const double late = seconds(step_.now - candidate.since) - late_after(job, candidate.extent);

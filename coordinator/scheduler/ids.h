@@ -17,9 +17,9 @@ using core::seconds;
 
 enum class JobId : uint64_t {};
 enum class WorkerId : uint64_t {};
-/// Whose word a worker's is: its own, or that of the credential it shares with others, who are one
-/// witness together. 0: nobody's.
-enum class Voice : uint64_t {};
+/// Who says what a worker says of a unit: it alone, or all workers of one credential, who are one
+/// witness together. 0: nobody.
+enum class Witness : uint64_t {};
 /// The token or pool that a worker came by, which can bring any number of workers.
 enum class Origin : uint64_t {};
 /// A class of workers, whose bits agree, by the name that they give. 0: none yet.

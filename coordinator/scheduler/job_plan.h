@@ -51,7 +51,7 @@ struct JobPlan {
   /// A unit that has failed with so many different workers fails its frame; where fewer are there
   /// that may try: with all of them, and so often in all.
   uint32_t max_attempts = 3;
-  uint32_t redundancy = 0;       ///< percent of its units that two voices have to render alike
+  uint32_t redundancy = 0;       ///< percent of its units that two witnesses have to render alike
   uint64_t redundancy_seed = 0;  ///< of which units these are: workers must not know it
 
   /// Batches that every tile gets.

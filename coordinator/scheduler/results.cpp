@@ -13,7 +13,7 @@
 namespace hyades::coordinator {
 namespace {
 
-/// Whether the unit is one of those that two voices have to render: the same share of all units,
+/// Whether the unit is one of those that two witnesses have to render: the same share of all units,
 /// and always the same ones, which nobody without the seed can tell.
 bool needs_two(const JobPlan& plan, int32_t frame, const Extent& extent) {
   if (plan.redundancy == 0) return false;
@@ -55,9 +55,9 @@ void Results::on(const ResultArrived& e) {
     reject(e, RejectReason::not_now);
   } else if (differs) {
     if (slot->worker_class != worker->worker_class) return reject(e, RejectReason::unknown);
-    dispute(*job, *slot, *extent, *held, worker->voice, e);
+    dispute(*job, *slot, *extent, *held, worker->witness, e);
   } else if (held) {
-    answer_again(*job, *slot, *extent, *held, worker->voice, e);
+    answer_again(*job, *slot, *extent, *held, worker->witness, e);
   } else if (ledger.any_held(*extent)) {
     reject(e, RejectReason::overlap);
   } else if (slot->worker_class != ClassId{} && slot->worker_class != worker->worker_class) {
@@ -80,24 +80,24 @@ void Results::reject(const ResultArrived& e, RejectReason reason) {
 
 /// The film differs from the one that is held.
 void Results::dispute(ScheduledJob& job, FrameSlot& slot, const Extent& extent,
-                      const HeldRecord& held, Voice voice, const ResultArrived& e) {
+                      const HeldRecord& held, Witness witness, const ResultArrived& e) {
   // What is held may not become durable after all, and the dispute is over then: that the two
   // differ would be forgotten with the film of this one.
   const bool durable = held.pending == RecordId{};
-  const bool right = conflicts_.weigh(job, slot, extent, voice, e);
+  const bool right = conflicts_.weigh(job, slot, extent, witness, e);
   const bool known = durable && job.mark == DisputeMark::open;
   reject(e, right || !known ? RejectReason::not_now : RejectReason::conflict);
 }
 
 /// The film is the one that is held, as far as is known: it is acknowledged when that is durable.
 void Results::answer_again(ScheduledJob& job, FrameSlot& slot, const Extent& extent,
-                           const HeldRecord& held, Voice voice, const ResultArrived& e) {
+                           const HeldRecord& held, Witness witness, const ResultArrived& e) {
   if (held.pending == RecordId{}) {
     step_.say(Acknowledge{e.worker, e.lease, e.job, e.unit});
   } else {
     records_.await(held.pending, {e.worker, e.lease});
   }
-  if (held.digest != Digest{}) conflicts_.weigh(job, slot, extent, voice, e);
+  if (held.digest != Digest{}) conflicts_.weigh(job, slot, extent, witness, e);
 }
 
 /// The film counts once it is durable. Whoever else renders the unit can stop.
@@ -107,9 +107,10 @@ void Results::accept(ScheduledJob& job, FrameSlot& slot, const Extent& extent, W
   workers_.forget_given_back(e.worker);
   worker.delivered = step_.now;
   films_.take(job, slot);
-  slot.ledger->hold(extent, {extent.batches, e.digest, e.worker, records_.next_id(), worker.voice});
+  slot.ledger->hold(extent,
+                    {extent.batches, e.digest, e.worker, records_.next_id(), worker.witness});
   if (needs_two(job.plan, slot.frame, extent)) {
-    slot.ledger->open_dispute(extent, {e.worker, e.digest, worker.voice});
+    slot.ledger->open_dispute(extent, {e.worker, e.digest, worker.witness});
   }
   leases_.end_assignment(job, slot, extent, e.lease);
   records_.persist(UnitRecord{job.id, {e.unit, e.digest, workers_.class_of(worker)}}, extent,
@@ -146,22 +147,22 @@ void Results::on(const UnitFailed& e) {
   if (assignment == nullptr) return;
   const Extent whole = assignment->extent;
   const Worker* worker = workers_.find(e.worker);  // whose lease it is, so that it is there
-  slot->ledger->blame(whole, e.worker, worker->voice);
+  slot->ledger->blame(whole, e.worker, worker->witness);
   workers_.failures(e.worker).reason = e.reason;
   leases_.end_unit(*job, *slot, *extent, e.lease);
   if (hopeless(*job, *slot, whole)) frames_.fail_or_leave(*job, *slot, e.worker, e.reason);
 }
 
-/// Whether a unit has failed with so many different voices that it is the unit's fault; or that
-/// often in all, and nobody is there whose voice is another.
+/// Whether a unit has failed with so many different witnesses that it is the unit's fault; or that
+/// often in all, and nobody is there whose witness is another.
 bool Results::hopeless(const ScheduledJob& job, const FrameSlot& slot, const Extent& extent) const {
   const FailedUnits& failed = slot.ledger->failed();
-  std::vector<Voice> tried = failed.voices(extent);
+  std::vector<Witness> tried = failed.witnesses(extent);
   if (tried.size() >= job.plan.max_attempts) return true;
   if (failed.failures(extent) < job.plan.max_attempts) return false;
   // Those whose films of it are the matter are not asked again.
   if (const Dispute* dispute = slot.ledger->find_dispute(extent)) {
-    for (const Opinion& o : dispute->opinions) tried.push_back(o.voice);
+    for (const Opinion& o : dispute->opinions) tried.push_back(o.witness);
   }
   return !workers_.anybody_besides({}, tried, job, slot.worker_class);
 }

@@ -30,9 +30,9 @@ class Results {
  private:
   void reject(const ResultArrived& e, RejectReason reason);
   void dispute(ScheduledJob& job, FrameSlot& slot, const Extent& extent, const HeldRecord& held,
-               Voice voice, const ResultArrived& e);
+               Witness witness, const ResultArrived& e);
   void answer_again(ScheduledJob& job, FrameSlot& slot, const Extent& extent,
-                    const HeldRecord& held, Voice voice, const ResultArrived& e);
+                    const HeldRecord& held, Witness witness, const ResultArrived& e);
   void accept(ScheduledJob& job, FrameSlot& slot, const Extent& extent, Worker& worker,
               const ResultArrived& e);
   bool hopeless(const ScheduledJob& job, const FrameSlot& slot, const Extent& extent) const;

@@ -23,13 +23,13 @@ uint64_t number_of(const std::string& name) {
   return number | kNamed;
 }
 
-Voice voice_of(const WorkerJoined& joined) {
-  if (joined.credential.empty()) return Voice{static_cast<uint64_t>(joined.worker)};
-  return Voice{number_of(joined.credential)};
+Witness witness_of(const WorkerJoined& joined) {
+  if (joined.credential.empty()) return Witness{static_cast<uint64_t>(joined.worker)};
+  return Witness{number_of(joined.credential)};
 }
 
 Origin origin_of(const WorkerJoined& joined) {
-  if (joined.origin.empty()) return Origin{static_cast<uint64_t>(voice_of(joined))};
+  if (joined.origin.empty()) return Origin{static_cast<uint64_t>(witness_of(joined))};
   return Origin{number_of(joined.origin)};
 }
 
@@ -73,7 +73,7 @@ const Worker* ScheduledWorkers::find(WorkerId id) const {
 
 Worker& ScheduledWorkers::add(const WorkerJoined& joined) {
   Worker& worker = workers_[joined.worker];
-  worker.voice = voice_of(joined);
+  worker.witness = witness_of(joined);
   worker.origin = origin_of(joined);
   worker.threads = joined.threads;
   worker.worker_class = class_id(joined.worker_class);
@@ -168,16 +168,16 @@ void ScheduledWorkers::note_slow(ClassId worker_class, TimePoint since,
     if (worker.barred || worker.worker_class != worker_class) continue;
     const bool held = std::find(holders.begin(), holders.end(), id) != holders.end();
     if (!held && worker.delivered && *worker.delivered >= since) continue;
-    slow_voices_[worker.voice] = until;
+    slow_witnesses_[worker.witness] = until;
     // Else everybody is of this origin.
     if (others) slow_origins_[worker.origin] = {step_.now, until};
   }
 }
 
 bool ScheduledWorkers::is_slow(const Worker& worker) const {
-  const auto voice = slow_voices_.find(worker.voice);
+  const auto witness = slow_witnesses_.find(worker.witness);
   const auto origin = slow_origins_.find(worker.origin);
-  return (voice != slow_voices_.end() && voice->second > step_.now) ||
+  return (witness != slow_witnesses_.end() && witness->second > step_.now) ||
          (origin != slow_origins_.end() && origin->second.until > step_.now &&
           worker.joined >= origin->second.since);
 }
@@ -185,7 +185,7 @@ bool ScheduledWorkers::is_slow(const Worker& worker) const {
 bool ScheduledWorkers::forgive_slow() {
   const auto is_over = [&](const auto& entry) { return entry.second <= step_.now; };
   const auto has_ended = [&](const auto& entry) { return entry.second.until <= step_.now; };
-  return std::erase_if(slow_voices_, is_over) + std::erase_if(slow_origins_, has_ended) > 0;
+  return std::erase_if(slow_witnesses_, is_over) + std::erase_if(slow_origins_, has_ended) > 0;
 }
 
 bool ScheduledWorkers::anybody_with_better_claim(const ScheduledJob& job, const FrameSlot& slot,
@@ -255,13 +255,13 @@ uint64_t ScheduledWorkers::count(const Needs& needs) const {
 
 bool ScheduledWorkers::may_try(const ScheduledJob& job, WorkerId id, const Worker& worker,
                                const std::vector<WorkerId>& blamed,
-                               const std::vector<Voice>& heard) const {
+                               const std::vector<Witness>& heard) const {
   return !std::binary_search(blamed.begin(), blamed.end(), id) ||
          !anybody_besides(blamed, heard, job, worker.worker_class);
 }
 
 bool ScheduledWorkers::anybody_besides(const std::vector<WorkerId>& tried,
-                                       const std::vector<Voice>& heard, const ScheduledJob& job,
+                                       const std::vector<Witness>& heard, const ScheduledJob& job,
                                        ClassId worker_class) const {
   const auto it = classes_.find(worker_class);
   if (it == classes_.end()) return false;
@@ -269,7 +269,7 @@ bool ScheduledWorkers::anybody_besides(const std::vector<WorkerId>& tried,
   return std::any_of(able.begin(), able.end(), [&](WorkerId id) {
     if (std::binary_search(tried.begin(), tried.end(), id)) return false;
     const Worker& other = workers_.at(id);
-    return suits(job, other) && std::find(heard.begin(), heard.end(), other.voice) == heard.end();
+    return suits(job, other) && std::find(heard.begin(), heard.end(), other.witness) == heard.end();
   });
 }
 

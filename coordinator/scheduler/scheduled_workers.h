@@ -24,7 +24,7 @@ struct Worker {
     bool alone = false;  ///< the worker had nothing else to do
   };
 
-  Voice voice{};
+  Witness witness{};
   Origin origin{};
   uint32_t threads = 1;
   ClassId worker_class{};
@@ -120,13 +120,13 @@ class ScheduledWorkers {
   /// Whether a worker of the class may get units of the job.
   bool anybody_for(const ScheduledJob& job, ClassId worker_class) const;
   /// Whether a worker of the class is there that may get units of the job, is none of `tried`,
-  /// which is sorted, and has none of the voices that were `heard`.
-  bool anybody_besides(const std::vector<WorkerId>& tried, const std::vector<Voice>& heard,
+  /// which is sorted, and has none of the witnesses that were `heard`.
+  bool anybody_besides(const std::vector<WorkerId>& tried, const std::vector<Witness>& heard,
                        const ScheduledJob& job, ClassId worker_class) const;
   /// Whether the worker may get a unit that has failed with `blamed`: not as one of them, as long
-  /// as somebody is there who has not failed it, and whose voice was not `heard`.
+  /// as somebody is there who has not failed it, and whose witness was not `heard`.
   bool may_try(const ScheduledJob& job, WorkerId id, const Worker& worker,
-               const std::vector<WorkerId>& blamed, const std::vector<Voice>& heard = {}) const;
+               const std::vector<WorkerId>& blamed, const std::vector<Witness>& heard = {}) const;
 
   /// To be called when its wish has changed.
   void update_waiting(WorkerId id, Worker& worker);
@@ -160,8 +160,8 @@ class ScheduledWorkers {
   std::map<uint64_t, WorkerId> waiting_;
   uint64_t next_waiting_ = 1;
   std::map<ClassId, Class> classes_;
-  size_t classes_at_work_ = 0;              ///< that have origins
-  std::map<Voice, TimePoint> slow_voices_;  ///< until when
+  size_t classes_at_work_ = 0;                   ///< that have origins
+  std::map<Witness, TimePoint> slow_witnesses_;  ///< until when
   struct SlowOrigin {
     TimePoint since;  ///< those who came before are not meant
     TimePoint until;

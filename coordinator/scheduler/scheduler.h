@@ -52,7 +52,7 @@ class Scheduler {
   /// How many units of the job have been rendered differently by two workers, and wait for another
   /// worker to render them too.
   uint32_t disputed_units(JobId job) const;
-  /// How many have been rendered once, and wait for another voice to render them too
+  /// How many have been rendered once, and wait for another witness to render them too
   /// (JobPlan::redundancy).
   uint32_t units_to_confirm(JobId job) const;
 

@@ -43,7 +43,7 @@ void WorkerLifecycle::adopt(WorkerId id, Worker& worker, const UnitInHand& held,
   const auto extent = job ? job->extent_of(held.unit) : std::nullopt;
   if (slot == nullptr || !extent || workers_.quarantined(id) ||
       slot->phase != FramePhase::rendering || !workers_.may_render(*job, *slot, worker) ||
-      !slot->ledger->may_assign(*extent, worker.voice) ||
+      !slot->ledger->may_assign(*extent, worker.witness) ||
       (!slot->film && !films_.has_place(*job))) {
     step_.say(Revoke{id, held.lease, held.job, held.unit});
     return;

@@ -1,6 +1,7 @@
 #include "core/base/cgroup.h"
 
 #include <algorithm>
+#include <cstddef>
 #include <fstream>
 #include <sstream>
 #include <string_view>

@@ -7,7 +7,7 @@
 
 namespace hyades::core {
 
-/// Of a target's name, so many bytes at most are part of the name of its temporary
+/// So many bytes of a target's name at most are part of the name of its temporary
 /// (".NAME.16 hex digits.tmp", see replace_file).
 inline constexpr size_t kNameInTemporary = 200;
 
@@ -17,8 +17,8 @@ struct Leftover {
   std::string target;  ///< name of what it was to replace, its first kNameInTemporary bytes
 };
 
-/// Those in `folder` (not below) that were last written before `before`. None where it cannot be
-/// listed.
+/// The leftovers in `folder` (not below) that were last written before `before`. None where it
+/// cannot be listed.
 std::vector<Leftover> find_leftovers(const std::string& folder,
                                      std::filesystem::file_time_type before);
 

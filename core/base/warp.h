@@ -82,13 +82,6 @@ inline Vec2 uniform_sphere_to_square(const Vec3& w) {
   return {0.5F - 0.5F * w.z, turn < 0.0F ? std::min(turn + 1.0F, 0x1.fffffep-1F) : turn};
 }
 
-/// 1 - cos of the half angle under which a sphere of `radius` appears from `distance` (squared) to
-/// its centre, outside: the cone of directions that hit it. 1 on the surface.
-inline float sphere_one_minus_cos(float radius, float distance2) {
-  const float sine2 = std::min(radius * radius / distance2, 1.0F);
-  return sine2 / (1.0F + std::sqrt(1.0F - sine2));
-}
-
 /// Barycentric weights (b0, b1) of the first two corners of a triangle, the third has
 /// 1 - b0 - b1 (Heitz 2019, "A Low-Distortion Map Between Triangle and Square"). The density per
 /// area is 1 / area.

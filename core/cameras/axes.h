@@ -14,13 +14,13 @@ struct CameraAxes {
 /// `v` scaled to unit length, or zero where it has no direction. Works for any finite length.
 Vec3 unit_or_zero(const Vec3& v);
 
-/// Of a camera that looks along `view` with `up` (any lengths) on top as far as that goes. One that
-/// looks nowhere looks along -z. Where `up` says nothing, straight down has -z on top and straight
-/// up has +z, so that +x stays on the right as for a camera that looks ahead.
+/// The axes of a camera that looks along `view` with `up` (any lengths) on top as far as that goes.
+/// One that looks nowhere looks along -z. Where `up` says nothing, straight down has -z on top and
+/// straight up has +z, so that +x stays on the right as for a camera that looks ahead.
 CameraAxes axes_along(const Vec3& view, const Vec3& up);
 
-/// Of a camera that stands upright: `up` is up exactly (+y where it has no direction), and the
-/// middle lies where `view` points, seen from above; where that says nothing, at -z, else +x.
+/// The axes of a camera that stands upright: `up` is up exactly (+y where it has no direction), and
+/// the middle lies where `view` points, seen from above; where that says nothing, at -z, else +x.
 CameraAxes axes_upright(const Vec3& view, const Vec3& up);
 
 }  // namespace hyades::core

@@ -20,7 +20,6 @@ static_assert(std::endian::native == std::endian::little, "the format is little-
 
 constexpr uint32_t kMagic = 0x4D465948;  // "HYFM"
 constexpr uint16_t kVersion = 3;         ///< of films with layers that older versions do not know
-constexpr uint16_t kSplatVersion = 2;    ///< of other films with splats
 constexpr uint64_t kFreeBytes = uint64_t{64} << 20U;
 constexpr uint64_t kMaxExpansion = 4096;
 constexpr int32_t kMaxCoordinate = 1 << 24;

@@ -18,10 +18,10 @@ namespace hyades::core {
 /// of pixels lies here at a time.
 class IdRows {
  public:
-  /// As many channels as `film` needs.
+  /// With as many channels as `film` needs.
   explicit IdRows(const Film& film);
 
-  /// As many as a file has; others of its channels are not looked at.
+  /// With as many channels as a file has for ids; its others are not looked at.
   IdRows(const FilmLayout& layout, const PixelRect& window, const Imf::ChannelList& channels);
 
   const std::vector<std::string>& names() const { return names_; }

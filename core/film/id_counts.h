@@ -53,7 +53,7 @@ class IdLayer {
   /// What row `y` of the window holds: by pixel, then by id.
   std::span<const IdCount> row(int y) const;
 
-  /// Of one pixel.
+  /// What the pixel holds, by id.
   std::span<const IdCount> at(int x, int y) const;
 
   const std::map<uint32_t, std::string>& names() const { return names_; }

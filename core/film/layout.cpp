@@ -65,11 +65,6 @@ const char* name_of(LightComponent component) {
   return kComponentNames[static_cast<size_t>(component)];
 }
 
-bool LayerSet::has_parts() const {
-  return !light_groups.empty() ||
-         std::find(components.begin(), components.end(), true) != components.end();
-}
-
 std::string layers_text(const LayerSet& set) {
   std::string text;
   const auto add = [&](std::string_view name) {

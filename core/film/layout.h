@@ -61,7 +61,6 @@ struct LayerSet {
   std::array<bool, kIdKinds> ids{};         ///< how many samples met which object, which material
   friend bool operator==(const LayerSet&, const LayerSet&) = default;
 
-  bool has_parts() const;  ///< light is told apart: any components or light groups
   bool has_ids() const { return ids[0] || ids[1]; }
 };
 

@@ -7,19 +7,19 @@
 namespace hyades::core {
 namespace {
 
-FramePlace whole(const Image& image) { return {0, 0, image.width, image.height}; }
+ImageWindow whole(const Image& image) { return {0, 0, image.width, image.height}; }
 
-FramePlace placement_of(const Image& image) {
+ImageWindow placement_of(const Image& image) {
   return image.placement.in_frame() ? image.placement : whole(image);
 }
 
 PixelRect window_of(const Image& image) {
-  const FramePlace place = placement_of(image);
+  const ImageWindow place = placement_of(image);
   return {place.x, place.y, place.x + image.width, place.y + image.height};
 }
 
 Image part_of(const Image& image, const PixelRect& window) {
-  const FramePlace place = placement_of(image);
+  const ImageWindow place = placement_of(image);
   return cut_out(image, window.x0 - place.x, window.y0 - place.y, window.width(), window.height());
 }
 
@@ -27,8 +27,8 @@ Image part_of(const Image& image, const PixelRect& window) {
 
 Status cut_to_common_part(Image& a, Image& b) {
   if (a.placement == b.placement) return {};
-  const FramePlace in_a = placement_of(a);
-  const FramePlace in_b = placement_of(b);
+  const ImageWindow in_a = placement_of(a);
+  const ImageWindow in_b = placement_of(b);
   if (in_a.frame_width != in_b.frame_width || in_a.frame_height != in_b.frame_height) {
     return Error{fmt::format("the frames have different sizes: {} x {} and {} x {}",
                              in_a.frame_width, in_a.frame_height, in_b.frame_width,

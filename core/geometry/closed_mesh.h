@@ -11,8 +11,8 @@ struct MeshClosure {
   /// Edges with more triangles on one side of them than on the other, corners at equal positions
   /// taken as one: those of holes, and those between triangles that face opposite ways.
   size_t open_edges = 0;
-  /// Of its inside, in object space; below 0 where its normals point inwards. Means little where it
-  /// is open.
+  /// The volume of its inside, in object space; below 0 where its normals point inwards. Means
+  /// little where it is open.
   double volume = 0.0;
 
   /// It is closed, but its normals point inwards.

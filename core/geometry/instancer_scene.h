@@ -35,7 +35,7 @@ class InstancerScene {
   const Motion& motion() const { return motion_; }
   RTCScene scene() const { return scene_->handle(); }
   Bounds bounds() const { return bounds_; }
-  /// Of what has the bounds `inner` in each copy.
+  /// The bounds, over all copies, of what has the bounds `inner` in each.
   Bounds bounds_of(const Bounds& inner) const;
   size_t memory() const;  ///< bytes of places, of Embree's scene and of the world that is copied
 

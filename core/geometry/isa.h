@@ -11,10 +11,11 @@ namespace hyades::core {
 /// Errors: Embree supports neither here.
 Result<std::string> embree_isa();
 
-/// "3.13.5", of the library that was compiled against.
+/// The version of the Embree that was compiled against: "3.13.5".
 std::string embree_version();
 
-/// Of the library that is loaded, which may be a newer one; empty where Embree does not run here.
+/// The version of the Embree that is loaded, which may be a newer one; empty where Embree does not
+/// run here.
 std::string loaded_embree_version();
 
 }  // namespace hyades::core

@@ -22,7 +22,7 @@ Vec2 second_uv(const SurfacePoint& point);
 /// along the triangle. 0 where there is none, or the triangle is degenerate.
 std::array<Vec3, 2> second_uv_gradient(const SurfacePoint& point);
 
-/// Of the tangents of the mesh's file: whether growing v lies on the other side than
+/// Whether, by the tangents of the mesh's file, growing v lies on the other side than
 /// cross(normal, tangent), as the surface stands in the world. Nothing where there are none.
 std::optional<bool> file_tangent_mirrored(const SurfacePoint& point);
 

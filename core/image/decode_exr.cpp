@@ -35,7 +35,7 @@ bool is_alpha(const std::string& channel) {
 
 /// Where the data window lies in a display window that holds it; nowhere in particular where they
 /// are equal, or where pixels lie outside (overscan).
-FramePlace placement_in(const Imath::Box2i& display, const Imath::Box2i& data) {
+ImageWindow placement_in(const Imath::Box2i& display, const Imath::Box2i& data) {
   if (data == display || !display.intersects(data.min) || !display.intersects(data.max)) return {};
   const Imath::V2i place = data.min - display.min;
   return {place.x, place.y, display.max.x - display.min.x + 1, display.max.y - display.min.y + 1};

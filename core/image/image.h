@@ -9,14 +9,14 @@
 namespace hyades::core {
 
 /// Where a picture lies in a larger frame, in pixels; frame_width 0: it is a whole frame.
-struct FramePlace {
+struct ImageWindow {
   int x = 0;  ///< of the left column
   int y = 0;  ///< of the top row
   int frame_width = 0;
   int frame_height = 0;
 
   bool in_frame() const { return frame_width > 0; }
-  friend bool operator==(const FramePlace&, const FramePlace&) = default;
+  friend bool operator==(const ImageWindow&, const ImageWindow&) = default;
 };
 
 /// Pixels in memory: interleaved float channels, row 0 on top.
@@ -25,7 +25,7 @@ struct Image {
   int height = 0;
   std::vector<std::string> channels;  ///< "R", "G", "B", "A", "Y", "albedo.R", ... in order
   std::vector<float> data;            ///< width * height * channels.size()
-  FramePlace placement = {};          ///< kept by EXR files (data and display window) only
+  ImageWindow placement = {};         ///< kept by EXR files (data and display window) only
 
   int channel_count() const { return static_cast<int>(channels.size()); }
   size_t index(int x, int y, int c) const {

@@ -62,7 +62,7 @@ Imath::Box2i data_window(const Image& image) {
 }
 
 Imath::Box2i display_window(const Image& image) {
-  const FramePlace& place = image.placement;
+  const ImageWindow& place = image.placement;
   if (!place.in_frame()) return data_window(image);
   return {{0, 0}, {place.frame_width - 1, place.frame_height - 1}};
 }

@@ -25,8 +25,8 @@ class MediaNumbers {
     light_passing  ///< of one from a light
   };
 
-  /// Of the way after `depth` scattering events; of connections: their number, modulo 2^16 (two
-  /// that share numbers are different terms of a sum).
+  /// The numbers of the way after `depth` scattering events; of connections `depth` is their
+  /// number, modulo 2^16 (two that share numbers are different terms of a sum).
   MediaNumbers(Sampler& sampler, int depth, Purpose purpose)
       : sampler_(&sampler),
         dimension_(first(purpose) + (static_cast<uint32_t>(depth) % kWays) * 2 * kPerWay) {}

@@ -16,7 +16,7 @@ struct Curve {
   std::string path;  ///< "camera.fov", "objects.ball.at", "objects.ball.transform[1].rotate_y"
   std::variant<Animated<float>, Animated<Vec2>, Animated<Vec3>, Animated<Vec4>> value;
 
-  /// Its one to four numbers.
+  /// The one to four numbers of the value at `time`.
   std::vector<float> at(const JobTime& time) const;
   bool is_constant() const;
 };

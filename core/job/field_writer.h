@@ -81,7 +81,8 @@ class FieldWriter : public FieldVisitor<FieldWriter> {
     put(key, value);
   }
   using FieldVisitor::map;
-  /// Its lines stand beside those of what it belongs to where it has no name there.
+  /// The lines of a description within another stand beside those of what it belongs to where it
+  /// has no name there.
   template <class Desc>
   void map(const KeyName& key, const char* /*section*/, const Desc& desc) {
     enter(key.line);

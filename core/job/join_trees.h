@@ -53,7 +53,7 @@ class JoinedFiles {
   std::map<std::string, JoinedSection> sections_;  ///< that two files have
 };
 
-/// Of two files.
+/// The job that two files make together, as JoinedFiles says.
 YamlPtr join_files(const YamlNode& upper, const YamlNode& lower, bool overrides,
                    Diagnostics& diagnostics);
 

@@ -259,7 +259,7 @@ class MapReader {
 };
 
 /// What the keys of a description ask of each other, beyond what each takes, where none is empty.
-/// Of most nothing; for the others there are overloads, which complain.
+/// Most ask nothing; for the others there are overloads, which complain.
 template <class Desc>
 void check_keys(MapReader& /*reader*/, Desc& /*desc*/) {}
 

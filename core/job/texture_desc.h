@@ -414,7 +414,7 @@ struct TextureDesc {
   }
 };
 
-/// Its mapping; one that says nothing where it has none.
+/// The mapping of a texture; one that says nothing where it has none.
 inline textures::Mapping mapping_of(const TextureDesc& texture) {
   return std::visit(
       [](const auto& kind) -> textures::Mapping {

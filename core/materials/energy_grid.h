@@ -32,7 +32,7 @@ inline float energy_column(float cosine, float alpha) {
   return cosine > 0.0F ? std::sqrt(cosine * (1.0F + alpha) / (cosine + alpha)) : 0.0F;
 }
 
-/// Its inverse.
+/// The cosine whose energy_column() is `column`.
 inline float energy_cosine(float column, float alpha) {
   const float square = column * column;
   return std::min(1.0F, square * alpha / (1.0F + alpha - square));

@@ -14,7 +14,7 @@ namespace hyades::core {
 /// 0.001 (one standard deviation; 0.008 near the critical angle of sharp lobes).
 class FacetEnergy {
  public:
-  /// Of facets that reflect everything; made at first use.
+  /// The table of facets that reflect everything; made at first use.
   static const FacetEnergy& table();
 
   /// `eta` >= 0: index of the other side over that of the side where light arrives; infinite where

@@ -67,7 +67,8 @@ class LayerLight {
   /// more than `beneath` tells.
   LayerLight(const LayerLoss& loss, const Spread& beneath, const Rgb& all);
 
-  /// Of light from `cosine`, what comes back on this side and on the other. Picks the lobe.
+  /// What of the light from `cosine` comes back on this side and on the other: the lobe's weight
+  /// when one is chosen.
   Rgb part(float cosine) const { return lost(cosine) * again_; }
   float through_share() const { return through_; }
 

@@ -22,7 +22,7 @@ class Fuzz {
   /// (0.007 within half a degree of the surface).
   float reflectance(float cosine) const;
 
-  /// Its mean over the hemisphere, weighed with the cosine.
+  /// The mean of reflectance() over the hemisphere, weighed with the cosine.
   float mean_reflectance() const;
 
  private:

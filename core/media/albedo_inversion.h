@@ -11,8 +11,9 @@ namespace hyades::core {
 /// value for g = 0.
 float diffuse_reflectance(float albedo, float g);
 
-/// Its inverse: the albedo that sends back `reflectance` (0..1); Kulla and Conty 2017, "Revisiting
-/// Physically Based Shading at Imageworks" (Physically Based Shading course, SIGGRAPH), page 14.
+/// The inverse of diffuse_reflectance(): the albedo that sends back `reflectance` (0..1); Kulla and
+/// Conty 2017, "Revisiting Physically Based Shading at Imageworks" (Physically Based Shading
+/// course, SIGGRAPH), page 14.
 float albedo_of_reflectance(float reflectance, float g);
 
 /// What a smooth surface of a dielectric does to diffuse light.
@@ -28,7 +29,7 @@ DiffuseFresnel diffuse_fresnel(float eta);
 /// "Calculation of the Color of Pigmented Plastics", J. Opt. Soc. Am. 32, 727. 1 for 1.
 float reflectance_through(float reflectance, float inner);
 
-/// Its inverse.
+/// The inverse of reflectance_through().
 float reflectance_behind(float seen, float inner);
 
 struct BodyColor {

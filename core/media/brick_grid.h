@@ -23,7 +23,7 @@ class BrickGrid {
   template <class Value, class Boxes>
   BrickGrid(const Vec3i& lower, const Vec3i& upper, const Value& value, const Boxes& boxes);
 
-  /// The same, where every point may have a value.
+  /// A grid of these integer points of which each may have a value.
   template <class Value>
   BrickGrid(const Vec3i& lower, const Vec3i& upper, const Value& value)
       : BrickGrid(lower, upper, value, [&](const auto& visit) { visit(lower, upper); }) {}

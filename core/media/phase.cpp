@@ -99,9 +99,4 @@ Vec3 Phase::sample(const Vec3& travel, const Rgb& shares, float pick, const Vec2
       frame.to_world({turn.sine * around.cos, turn.sine * around.sin, turn.cosine}));
 }
 
-Rgb Phase::mean_cosine() const {
-  if (rayleigh_) return Rgb(0.0F);
-  return (1.0F - blend_) * g_ + blend_ * other_g_;
-}
-
 }  // namespace hyades::core

@@ -29,9 +29,6 @@ class Phase {
   /// A direction after unit `travel`; `pick` chooses channel and lobe, all in [0, 1).
   Vec3 sample(const Vec3& travel, const Rgb& shares, float pick, const Vec2& u) const;
 
-  /// The mean cosine, per channel.
-  Rgb mean_cosine() const;
-
  private:
   Rgb g_{0.0F};
   Rgb other_g_{0.0F};

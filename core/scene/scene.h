@@ -49,7 +49,7 @@ struct Scene {
   std::vector<LightPtr> lights;
   std::vector<std::string> light_names;   ///< one each, as in the job, for messages
   std::vector<std::string> light_groups;  ///< one each; empty: none
-  /// Of media whose light has a group.
+  /// Media whose light has a group, and its name.
   std::vector<std::pair<const Medium*, std::string>> medium_groups;
   std::vector<uint32_t>
       infinite_lights;  ///< indices in `lights` that rays find where they leave the world

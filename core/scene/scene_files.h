@@ -31,15 +31,15 @@ struct SceneFiles {
   std::vector<SceneFile<LightMap>> light_maps;
 };
 
-/// Those of what the scene shows: groups, materials and textures that nothing uses do not count. Of
-/// meshes with a file for each frame those that `frame` looks at; without it none.
+/// The files of what the scene shows: groups, materials and textures that nothing uses do not
+/// count. Of meshes with a file for each frame those that `frame` looks at; without it none.
 SceneFiles files_of_scene(const Job& job, std::optional<int32_t> frame = std::nullopt);
 
-/// Those of everything that the job holds, used or not, at all its frames; also of a job with
+/// The files of everything that the job holds, used or not, at all its frames; also of a job with
 /// mistakes in it.
 SceneFiles files_of_job(const Job& job);
 
-/// Those of `all` that are not among `some`.
+/// The files of `all` that are not among `some`.
 SceneFiles without(SceneFiles all, const SceneFiles& some);
 
 /// Meshes that are loaded already: whoever holds them finds them in the cache.

@@ -41,7 +41,7 @@ class Texels {
  public:
   Texels() = default;
 
-  /// Of rows from the top, kept in `store`. Values that `coding` cannot hold are rounded.
+  /// A picture of rows from the top, kept in `store`. Values that `coding` cannot hold are rounded.
   static Result<Texels> make(int width, int height, int channels, const std::vector<float>& values,
                              const TexelCoding& coding, TexelStore& store);
 
@@ -73,7 +73,7 @@ class Texels {
  private:
   static constexpr int kSide = 8;  ///< of a tile
 
-  /// Of the texel's first channel.
+  /// Where the texel's first channel lies in memory.
   size_t index(int x, int y) const {
     const int tile = (y / kSide) * tiles_across_ + x / kSide;
     const int inside = (y % kSide) * kSide + x % kSide;

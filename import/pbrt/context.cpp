@@ -29,7 +29,7 @@ uint64_t bytes_of(const LoadedScene& loaded) {
 /// Whether a picture of the scene's camera, seen as right-handed axes have it, is the wrong way
 /// round. A camera of perspective has x to the right, y up and z forward, which are left-handed;
 /// a panorama's middle is -x and its right -z, which are right-handed.
-bool needs_mirror(const Scene& scene) {
+bool needs_mirror(const ParsedScene& scene) {
   const bool turned = linear_determinant(scene.camera.to_world.at[0]) < 0.0;
   return (scene.camera.type == "spherical") == turned;
 }

@@ -19,7 +19,7 @@ namespace hyades::core::pbrt {
 
 /// A scene with the files that must be read to say it.
 struct LoadedScene {
-  Scene scene;
+  ParsedScene scene;
   std::map<std::string, Spectrum> spectra;     ///< of .spd files, by their names
   std::map<std::string, Bytes> files;          ///< what made files are made from
   std::map<std::string, std::string> missing;  ///< why a file is not in `files`
@@ -30,7 +30,7 @@ struct Context {
   Context(const LoadedScene& scene, const SceneRequest& request);
 
   const LoadedScene& loaded;
-  const Scene& scene;
+  const ParsedScene& scene;
   const SceneRequest& request;
   Report report;
 

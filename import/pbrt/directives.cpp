@@ -68,7 +68,8 @@ const std::unordered_map<std::string_view, Directives::Handler>& Directives::han
   return all;
 }
 
-Directives::Directives(Scene& scene, Includer& includer) : scene_(scene), includer_(includer) {
+Directives::Directives(ParsedScene& scene, Includer& includer)
+    : scene_(scene), includer_(includer) {
   scene_.film.type = "rgb";
   scene_.filter.type = "gaussian";
   scene_.sampler.type = "zsobol";

@@ -24,7 +24,7 @@ class Includer {
 /// Obeys the directives of scene files and collects the scene that they describe.
 class Directives {
  public:
-  Directives(Scene& scene, Includer& includer);
+  Directives(ParsedScene& scene, Includer& includer);
 
   /// Reads to the end of a file.
   Status read(Tokenizer& tokens);
@@ -101,7 +101,7 @@ class Directives {
     Place place;
   };
 
-  Scene& scene_;
+  ParsedScene& scene_;
   Includer& includer_;
   Tokenizer* tokens_ = nullptr;
   Place place_;  ///< of the directive that is being obeyed

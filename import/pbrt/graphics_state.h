@@ -20,9 +20,9 @@ struct GraphicsState {
   std::array<bool, 2> active{true, true};  ///< which of the two transforms directives change
   bool reversed = false;
   const RgbSpace* space = srgb_space();
-  size_t material = 0;  ///< index into Scene::materials, where material_name is empty
+  size_t material = 0;  ///< index into ParsedScene::materials, where material_name is empty
   std::string material_name;
-  int area_light = -1;  ///< index into Scene::area_lights
+  int area_light = -1;  ///< index into ParsedScene::area_lights
   std::string inside, outside;
   std::array<std::shared_ptr<const Parameters>, kTargets> attributes;
 

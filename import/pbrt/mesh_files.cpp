@@ -96,7 +96,7 @@ struct Run {
   size_t last = 0;
 };
 
-std::optional<Run> run_of(const Scene& scene, std::string_view name) {
+std::optional<Run> run_of(const ParsedScene& scene, std::string_view name) {
   Run run;
   if (take_word(name, "object-")) {
     const auto object = take_number(name);

@@ -40,7 +40,7 @@ Shutter shutter_of(Context& context) {
   return out;
 }
 
-bool scene_moves(const Scene& scene) {
+bool scene_moves(const ParsedScene& scene) {
   return scene.camera.to_world.moves() || any_moves(scene.shapes) || any_moves(scene.instances) ||
          std::any_of(scene.objects.begin(), scene.objects.end(),
                      [](const ObjectDefinition& object) { return any_moves(object.shapes); });

@@ -12,7 +12,7 @@ struct Shutter {
 Shutter shutter_of(Context& context);
 
 /// Whether anything moves between the two times of its transform.
-bool scene_moves(const Scene& scene);
+bool scene_moves(const ParsedScene& scene);
 
 /// What a transform is while the shutter is open, at shutter time u from 0 to 1.
 Mat4d at_shutter(Context& context, const Motion& motion, double u);

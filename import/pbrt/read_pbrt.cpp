@@ -24,7 +24,7 @@ class Loader {
   Loader(const SceneFiles& files, LoadedScene& loaded) : files_(files), loaded_(loaded) {}
 
   Status load() {
-    const Scene& scene = loaded_.scene;
+    const ParsedScene& scene = loaded_.scene;
     for (const Entity* entity : {&scene.film, &scene.filter, &scene.integrator}) add(*entity);
     add(scene.camera);
     for (const Entity& material : scene.materials) add(material);
@@ -90,7 +90,7 @@ class Loader {
 
   /// Of files that jobs are to open, so that those that are missing are told with their places.
   void look_for_files() {
-    const Scene& scene = loaded_.scene;
+    const ParsedScene& scene = loaded_.scene;
     const auto look = [&](const auto& entities) {
       for (const Entity& entity : entities) look_for(entity);
     };

@@ -25,7 +25,7 @@ class TextReader : public Includer {
  public:
   explicit TextReader(const SceneFiles& files) : files_(files), directives_(scene_, *this) {}
 
-  Result<Scene> read() {
+  Result<ParsedScene> read() {
     const std::string main = files_.main();
     const size_t slash = main.rfind('/');
     if (Status s = read_file(slash == std::string::npos ? main : main.substr(slash + 1)); !s) {
@@ -73,7 +73,7 @@ class TextReader : public Includer {
   }
 
   const SceneFiles& files_;
-  Scene scene_;
+  ParsedScene scene_;
   Directives directives_;
   std::vector<std::string> open_;  ///< files that are being read
   std::set<std::string> known_;    ///< all files
@@ -84,6 +84,6 @@ class TextReader : public Includer {
 
 }  // namespace
 
-Result<Scene> read_scene_text(const SceneFiles& files) { return TextReader(files).read(); }
+Result<ParsedScene> read_scene_text(const SceneFiles& files) { return TextReader(files).read(); }
 
 }  // namespace hyades::core::pbrt

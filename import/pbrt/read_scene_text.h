@@ -6,6 +6,6 @@
 namespace hyades::core::pbrt {
 
 /// Reads a scene's main file and all that it includes. Errors name file, line and column.
-Result<Scene> read_scene_text(const SceneFiles& files);
+Result<ParsedScene> read_scene_text(const SceneFiles& files);
 
 }  // namespace hyades::core::pbrt

@@ -54,7 +54,7 @@ struct ObjectDefinition {
   Place place;
   std::vector<ShapeEntity> shapes;
   size_t still = 0;  ///< how many of its instances do not move
-  /// Where they stand, but for the first kFewestCopies - 1, which are among Scene::instances.
+  /// Where they stand, but for the first kFewestCopies - 1, which are among ParsedScene::instances.
   std::vector<PlaceMatrix> copies;
 };
 
@@ -65,7 +65,7 @@ struct ObjectInstance {
 };
 
 /// A scene as its files say it, defaults not yet filled in.
-struct Scene {
+struct ParsedScene {
   Entity film, filter, sampler, integrator;
   PlacedEntity camera;  ///< to_world: from the camera's space to the world's
   std::string camera_medium;

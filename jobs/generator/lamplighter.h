@@ -9,7 +9,4 @@ namespace hyades::gallery {
 /// one second in place, 0.62 units long) and "Wave". He looks along +z.
 std::string make_lamplighter();
 
-/// How far a cycle of "Walk" takes him.
-inline constexpr float kLamplighterStride = 0.62F;
-
 }  // namespace hyades::gallery

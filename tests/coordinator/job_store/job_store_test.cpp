@@ -266,7 +266,7 @@ class DivergentWorkers : public testing::Test {
     const auto jobs = store_->mark_divergent({"divergent-worker", "divergent"}, since,
                                              {7, 2, {}, "w", "frames "});
     EXPECT_TRUE(jobs.ok());
-    for (const JobFrames& suspected : *jobs) {
+    for (const SuspectFrames& suspected : *jobs) {
       if (suspected.job == job) return suspected.frames;
     }
     return {};

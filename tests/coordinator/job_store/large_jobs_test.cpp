@@ -287,7 +287,7 @@ TEST_F(LargeJobs, AreLookedThroughInTurnsWithOthersForWhatAWorkerDid) {
       ++finished;
     }
   });
-  std::vector<JobFrames> suspects;
+  std::vector<SuspectFrames> suspects;
   EXPECT_GE(answered_while([&] {
               suspects = *store_->mark_divergent({"divergent", "why"}, 4, {1, 2, {}, "", ""});
             }),

@@ -19,7 +19,7 @@ FrameLedger failed_with(WorkerId worker, uint32_t units) {
   for (uint32_t tile = 0; tile < units; ++tile) {
     const Extent e{tile, {0, 1}};
     ledger.assign(e, {worker, lease}, tile + 1);
-    ledger.blame(e, worker, Voice{1});
+    ledger.blame(e, worker, Witness{1});
     ledger.release(e, lease);
   }
   return ledger;
@@ -32,7 +32,7 @@ TEST(Attacks, UnitsThatHaveFailedWithOneWorkerAreLookedAtOnce) {
   FrameLedger ledger = failed_with(kAnna, kUnits);
   size_t asked = 0;
   const auto judge_of = [&](WorkerId worker) {
-    return [&asked, worker](const std::vector<WorkerId>& blamed, const std::vector<Voice>&) {
+    return [&asked, worker](const std::vector<WorkerId>& blamed, const std::vector<Witness>&) {
       ++asked;
       return !std::binary_search(blamed.begin(), blamed.end(), worker);
     };
@@ -60,7 +60,7 @@ TEST(Attacks, WhereOtherWorkIsLeftFailedUnitsAreNotLookedAt) {
   FrameLedger ledger({0, 1, 2}, 1);
   const Extent e{0, {0, 1}};
   ledger.assign(e, {kAnna, {1, 1}}, 1);
-  ledger.blame(e, kAnna, Voice{1});
+  ledger.blame(e, kAnna, Witness{1});
   ledger.release(e, {1, 1});
   size_t asked = 0;
   EXPECT_TRUE(ledger.has_work([&](const auto&, const auto&) { return ++asked == 0; }));

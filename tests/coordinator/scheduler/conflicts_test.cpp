@@ -247,7 +247,7 @@ class Redundancy : public testing::Test {
   SchedulerBench b;
 };
 
-TEST_F(Redundancy, HasAnotherVoiceRenderTheUnitToo) {
+TEST_F(Redundancy, HasAnotherWitnessRenderTheUnitToo) {
   begin(100);
   const Lease first = b.ask(kAnna);
   b.deliver_durably(first);

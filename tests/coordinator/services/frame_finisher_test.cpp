@@ -29,7 +29,7 @@ constexpr core::PixelRect kRegion{0, 0, 32, 32};
 constexpr uint32_t kSamples = 2 * core::kBatchSamples;
 
 /// Keeps why frames fail, and does nothing of what the scheduler wants.
-class Failures final : public Dispatcher::Executor {
+class Failures final : public Dispatcher::ActionHandler {
  public:
   void act(const std::vector<Action>& actions, Turn&, Delivery*) override {
     const std::lock_guard lock(mutex_);
@@ -64,7 +64,7 @@ struct FinisherWorld {
     options.finisher = "/nonexistent";
     context.emplace(options, std::move(*store), std::move(*assets), 1, "secret");
     dispatcher.emplace(context->mutex, SchedulerOptions{});
-    dispatcher->set_executor(failures);
+    dispatcher->set_action_handler(failures);
     jobs.emplace(context->mutex);
     disk.emplace(*context, *dispatcher, *jobs);
     finisher.emplace(*context, *dispatcher, *jobs, *disk, timelines);

@@ -176,9 +176,9 @@ class TroubledStore final : public JobStore {
     return written([&] { return store_->trust(workers); });
   }
   core::Result<std::vector<StoredTrust>> trusted() override { return store_->trusted(); }
-  core::Result<std::vector<JobFrames>> mark_divergent(const StoredQuarantine& worker,
-                                                      uint64_t since,
-                                                      const StoredLine& line) override {
+  core::Result<std::vector<SuspectFrames>> mark_divergent(const StoredQuarantine& worker,
+                                                          uint64_t since,
+                                                          const StoredLine& line) override {
     return written([&] { return store_->mark_divergent(worker, since, line); });
   }
   core::Result<std::vector<int32_t>> doubtful(uint64_t job, uint32_t limit) override {

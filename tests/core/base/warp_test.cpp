@@ -172,11 +172,5 @@ TEST(Warp, DensitiesIntegrateToOne) {
   EXPECT_NEAR(sum / 1000.0 * 2.0 * 3.14159265358979, 1.0, 1e-5);
 }
 
-TEST(Warp, ConeTowardsASphereIsExactNearAndFar) {
-  EXPECT_FLOAT_EQ(sphere_one_minus_cos(1.0F, 1.0F), 1.0F);
-  EXPECT_FLOAT_EQ(sphere_one_minus_cos(1.0F, 2.0F), 1.0F - std::sqrt(0.5F));
-  EXPECT_FLOAT_EQ(sphere_one_minus_cos(1.0F, 1e12F), 0.5e-12F);
-}
-
 }  // namespace
 }  // namespace hyades::core

@@ -115,8 +115,8 @@ TEST(Picture, ACropKeepsItsPlaceInTheFrame) {
     EXPECT_TRUE(write_outputs(outputs, folder.path().string(), info, film).ok());
     return read_image_file(folder.file("crop.exr"))->placement;
   };
-  EXPECT_EQ(placement({5, 7, 8, 9}), (FramePlace{5, 7, 20, 10}));
-  EXPECT_EQ(placement({0, 0, 20, 10}), FramePlace{});
+  EXPECT_EQ(placement({5, 7, 8, 9}), (ImageWindow{5, 7, 20, 10}));
+  EXPECT_EQ(placement({0, 0, 20, 10}), ImageWindow{});
 }
 
 TEST(Picture, EveryLayerCanBeWrittenAndMissingOnesAreNamed) {

@@ -1,7 +1,6 @@
 #include <gtest/gtest.h>
 
 #include "core/job/parse.h"
-#include "core/job/referenced_files.h"
 #include "core/job/render_key.h"
 #include "tests/core/job/test_assets.h"
 
@@ -62,9 +61,6 @@ TEST(Include, FilesAreRelativeToWhereTheyAreWritten) {
   EXPECT_EQ(r.job.objects[0].mesh, "parts/chairs/chair.obj");
   EXPECT_EQ(std::get<textures::Image>(r.job.textures[0].kind).file, "images/wall.png");
   EXPECT_EQ(r.job.environment->image, "parts/sky.hdr");
-  EXPECT_EQ(
-      referenced_files(r.job),
-      (std::vector<std::string>{"images/wall.png", "parts/chairs/chair.obj", "parts/sky.hdr"}));
 }
 
 TEST(Include, ComplaintsNameTheFileTheyAreIn) {

@@ -37,9 +37,8 @@ std::vector<PhaseCase> cases() {
   };
 }
 
-TEST(Phase, IntegratesToOneWithTheMeanCosineThatItSays) {
+TEST(Phase, IntegratesToOneWithItsMeanCosine) {
   for (const PhaseCase& c : cases()) {
-    const Rgb said = c.phase.mean_cosine();
     for (int channel = 0; channel < 3; ++channel) {
       const auto value = [&](double cosine) {
         return 2.0 * M_PI * double{c.phase.evaluate(static_cast<float>(cosine))[channel]};
@@ -48,7 +47,6 @@ TEST(Phase, IntegratesToOneWithTheMeanCosineThatItSays) {
       EXPECT_NEAR(test::integrate([&](double x) { return x * value(x); }, -1.0, 1.0, 1e-4, 512, 8),
                   double{c.mean_cosine[channel]}, 1e-3)
           << c.name;
-      EXPECT_NEAR(said[channel], c.mean_cosine[channel], 1e-6F) << c.name;
     }
   }
 }

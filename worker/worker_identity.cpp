@@ -1,4 +1,4 @@
-#include "worker/worker_id.h"
+#include "worker/worker_identity.h"
 
 #include <fcntl.h>
 #include <sys/file.h>
@@ -44,7 +44,8 @@ std::string read_id(int fd, const std::string& machine) {
 
 }  // namespace
 
-core::Result<WorkerId> WorkerId::take(const std::string& cache_folder, const std::string& machine) {
+core::Result<WorkerIdentity> WorkerIdentity::take(const std::string& cache_folder,
+                                                  const std::string& machine) {
   for (int number = 0; number < kMostWorkers; ++number) {
     const std::string path = fmt::format("{}/worker-{}.id", cache_folder, number);
     const auto failed = [&](const char* what) {
@@ -56,7 +57,7 @@ core::Result<WorkerId> WorkerId::take(const std::string& cache_folder, const std
       if (errno == EWOULDBLOCK) continue;
       return failed("lock");
     }
-    WorkerId id(path, machine, std::move(file));
+    WorkerIdentity id(path, machine, std::move(file));
     id.text_ = read_id(id.lock_.get(), machine);
     if (id.text_.empty()) {
       if (auto made = id.renew(); !made) return made.error();
@@ -67,7 +68,7 @@ core::Result<WorkerId> WorkerId::take(const std::string& cache_folder, const std
       fmt::format("{}: {} workers run with this cache already", cache_folder, kMostWorkers)};
 }
 
-core::Status WorkerId::renew() {
+core::Status WorkerIdentity::renew() {
   auto fresh = core::random_id();
   if (!fresh) return fresh.error();
   const std::string text = *fresh + " " + machine_ + "\n";
@@ -80,7 +81,7 @@ core::Status WorkerId::renew() {
   return {};
 }
 
-std::string WorkerId::token_file() const {
+std::string WorkerIdentity::token_file() const {
   return std::filesystem::path(path_).replace_extension(".token").string();
 }
 

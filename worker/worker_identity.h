@@ -12,11 +12,12 @@ namespace hyades::worker {
 /// it is started again, so that a quarantine holds. Kept in the cache folder, one file for each of
 /// the workers that share it; a worker takes the first that no running one has. Where the folder
 /// has come from another machine (an image with a filled cache) the name is made anew.
-class WorkerId {
+class WorkerIdentity {
  public:
   /// An error where the folder cannot be written.
   /// `machine`: as machine_name() has it.
-  static core::Result<WorkerId> take(const std::string& cache_folder, const std::string& machine);
+  static core::Result<WorkerIdentity> take(const std::string& cache_folder,
+                                           const std::string& machine);
 
   /// A new one, where another worker was found to have this one: a copy that machine_name() does
   /// not tell apart. An error where it cannot be written.
@@ -28,7 +29,7 @@ class WorkerId {
   std::string token_file() const;
 
  private:
-  WorkerId(std::string path, std::string machine, core::Descriptor lock)
+  WorkerIdentity(std::string path, std::string machine, core::Descriptor lock)
       : path_(std::move(path)), machine_(std::move(machine)), lock_(std::move(lock)) {}
 
   std::string path_;

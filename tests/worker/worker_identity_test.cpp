@@ -1,4 +1,4 @@
-#include "worker/worker_id.h"
+#include "worker/worker_identity.h"
 
 #include <gtest/gtest.h>
 
@@ -10,41 +10,41 @@
 namespace hyades::worker {
 namespace {
 
-TEST(WorkerId, StaysTheSameOverRestarts) {
+TEST(WorkerIdentity, StaysTheSameOverRestarts) {
   const test::TempFolder folder;
   std::string first;
   {
-    const auto id = WorkerId::take(folder.path(), "host");
+    const auto id = WorkerIdentity::take(folder.path(), "host");
     ASSERT_TRUE(id.ok());
     first = id->text();
     EXPECT_EQ(first.size(), 32U);
   }
-  EXPECT_EQ(WorkerId::take(folder.path(), "host")->text(), first);
+  EXPECT_EQ(WorkerIdentity::take(folder.path(), "host")->text(), first);
 }
 
-TEST(WorkerId, WorkersThatShareACacheHaveTheirOwn) {
+TEST(WorkerIdentity, WorkersThatShareACacheHaveTheirOwn) {
   const test::TempFolder folder;
-  auto one = std::optional(WorkerId::take(folder.path(), "host"));
-  const auto two = WorkerId::take(folder.path(), "host");
+  auto one = std::optional(WorkerIdentity::take(folder.path(), "host"));
+  const auto two = WorkerIdentity::take(folder.path(), "host");
   ASSERT_TRUE(one->ok() && two.ok());
   const std::string first = (*one)->text();
   EXPECT_NE(first, two->text());
   one.reset();
-  EXPECT_EQ(WorkerId::take(folder.path(), "host")->text(), first) << "its successor";
+  EXPECT_EQ(WorkerIdentity::take(folder.path(), "host")->text(), first) << "its successor";
 }
 
-TEST(WorkerId, IsMadeAnewOnAnotherHostAndWhereItIsTorn) {
+TEST(WorkerIdentity, IsMadeAnewOnAnotherHostAndWhereItIsTorn) {
   const test::TempFolder folder;
-  const std::string first = WorkerId::take(folder.path(), "host")->text();
-  const std::string other = WorkerId::take(folder.path(), "other")->text();
+  const std::string first = WorkerIdentity::take(folder.path(), "host")->text();
+  const std::string other = WorkerIdentity::take(folder.path(), "other")->text();
   EXPECT_NE(first, other);
   std::ofstream(folder.file("worker-0.id")) << other.substr(0, 20);
-  const std::string third = WorkerId::take(folder.path(), "other")->text();
+  const std::string third = WorkerIdentity::take(folder.path(), "other")->text();
   EXPECT_EQ(third.size(), 32U);
   EXPECT_NE(third.substr(0, 20), other.substr(0, 20));
 }
 
-TEST(WorkerId, TwoMachinesWithOneHostNameAreTold) {
+TEST(WorkerIdentity, TwoMachinesWithOneHostNameAreTold) {
   const test::TempFolder folder;
   std::ofstream(folder.file("one")) << "0123456789abcdef0123456789abcdef\n";
   std::ofstream(folder.file("two")) << "fedcba9876543210fedcba9876543210\n";
@@ -54,25 +54,25 @@ TEST(WorkerId, TwoMachinesWithOneHostNameAreTold) {
   EXPECT_EQ(one, machine_name("render", folder.file("one")));
   EXPECT_EQ(one.find("0123456789abcdef"), std::string::npos) << "the id itself is not given away";
   EXPECT_EQ(machine_name("render", folder.file("none")), "render");
-  const std::string first = WorkerId::take(folder.path(), one)->text();
-  EXPECT_NE(WorkerId::take(folder.path(), two)->text(), first);
+  const std::string first = WorkerIdentity::take(folder.path(), one)->text();
+  EXPECT_NE(WorkerIdentity::take(folder.path(), two)->text(), first);
 }
 
-TEST(WorkerId, ANewOneStays) {
+TEST(WorkerIdentity, ANewOneStays) {
   const test::TempFolder folder;
   std::string renewed;
   {
-    auto id = WorkerId::take(folder.path(), "host");
+    auto id = WorkerIdentity::take(folder.path(), "host");
     const std::string first = id->text();
     ASSERT_TRUE(id->renew().ok());
     renewed = id->text();
     EXPECT_NE(renewed, first);
   }
-  EXPECT_EQ(WorkerId::take(folder.path(), "host")->text(), renewed);
+  EXPECT_EQ(WorkerIdentity::take(folder.path(), "host")->text(), renewed);
 }
 
-TEST(WorkerId, AFolderThatCannotBeWrittenIsAnError) {
-  const auto id = WorkerId::take("/proc/no-such-folder", "host");
+TEST(WorkerIdentity, AFolderThatCannotBeWrittenIsAnError) {
+  const auto id = WorkerIdentity::take("/proc/no-such-folder", "host");
   ASSERT_FALSE(id.ok());
   EXPECT_NE(id.error().message.find("worker-0.id"), std::string::npos);
 }
