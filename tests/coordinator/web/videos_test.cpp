@@ -1,4 +1,5 @@
 // Videos that somebody asks for.
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <sys/stat.h>
@@ -156,7 +157,8 @@ TEST_F(SlowVideos, OwnersTakeTurnsAndNobodyFillsTheRow) {
   EXPECT_EQ(ask(many, 8), 503) << "eight of one owner's wait";
   EXPECT_EQ(ask(one, 0), 202) << "there is room for others";
   ASSERT_TRUE(eventually([&] { return begun().size() == 2; }));
-  EXPECT_EQ(begun(), (std::vector<uint64_t>{many, one})) << "of each owner one is made at a time";
+  EXPECT_THAT(begun(), testing::UnorderedElementsAre(many, one))
+      << "of each owner one is made at a time";
   go();
   ASSERT_TRUE(eventually([&] { return begun().size() == 9; }));
 }
