@@ -26,7 +26,7 @@ std::string swatch_job(const std::vector<KnownMedium>& media, const SwatchOption
   const float width = kApart * count + 0.8F;
   std::string text = fmt::format(
       "hyades: 1\nname: swatch\nunits: {}\nfilm: {{size: [{}, 220]}}\nsampling: {{samples: {}}}\n"
-      "integrator: {{type: path, max_depth: 4096}}\n",
+      "integrator: {{type: path, max_depth: 4096, clamp: 3}}\n",
       0.5F * options.size, static_cast<int>(220.0F * width / 3.2F), options.samples);
   text +=
       "camera: {look_from: [0, 6.8, 19], look_at: [0, 0.86, 0], fov: 9}\n"

@@ -12,7 +12,7 @@ namespace hyades::cli {
 struct SwatchOptions {
   std::string file;       ///< .png, .jpg or .exr
   float size = 0.02F;     ///< m, diameter of a ball
-  uint32_t samples = 24;  ///< per pixel
+  uint32_t samples = 40;  ///< per pixel
   int threads = 1;
   bool quiet = false;
 };

@@ -12,18 +12,17 @@ end
 
 local materials = {
   chrome = {type = "conductor", metal = "chromium", roughness = 0.02},
-  floor = {type = "glossy", color = {0.4, 0.39, 0.38}, reflectiveness = 0.15, glossiness = 0.8},
+  floor = {type = "glossy", color = {0.72, 0.7, 0.68}, reflectiveness = 0.25, glossiness = 0.9},
 }
 local objects = {
-  floor = {shape = "rectangle", size = {60, 60}, material = "floor"},
-  ball = {shape = "sphere", radius = 1.1, at = {0, 1.5 + 0.12 * math.sin(math.pi * time()), 0}, material = "chrome"},
-  lamp = {shape = "rectangle", size = {5, 5}, transform = {{rotate_x = 180}}, at = {-2, 8, 3}, emit = {color = "5200K", power = 700}},
+  floor = {shape = "rectangle", size = {400, 400}, material = "floor"},
+  ball = {shape = "sphere", radius = 1.15, at = {0, 1.6 + 0.12 * math.sin(math.pi * time()), 0}, material = "chrome"},
 }
 for i = 1, count do
   local name = string.format("plane_%02d", i)
   local height = 1 + 0.4 * math.sin(4 * math.pi * i / count)
   local turn = 360 * i / count + 15 * time()
-  materials[name] = {type = "lambert", color = hue(i / count, 0.75)}
+  materials[name] = {type = "lambert", color = hue(i / count, 0.85)}
   objects[name] = {
     shape = "box",
     size = {1.3, height, 0.03},
@@ -38,9 +37,9 @@ return {
   film = {size = {720, 400}},
   sampling = {samples = 256, seed = 4},
   integrator = {type = "path", max_depth = 8},
-  camera = {look_from = {0, 4.8, 8.4}, look_at = {0, 0.85, 0}, fov = 36},
+  camera = {look_from = {0, 2.7, 9.4}, look_at = {0, 1.05, 0}, fov = 34},
   materials = materials,
   objects = objects,
-  environment = {color = {0.12, 0.15, 0.2}},
+  environment = {sky = {elevation = 28, azimuth = 130, turbidity = 2.5, sun_size = 4}, strength = 3.2},
   outputs = {{file = "sphere-and-planes.####.exr"}, {file = "sphere-and-planes.####.png", tone_map = "filmic"}},
 }
