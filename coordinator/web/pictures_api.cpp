@@ -253,10 +253,12 @@ std::optional<PicturesApi::JobAndFrame> PicturesApi::begin_next() {
   if (alone_) {
     if (!in_work_.empty()) return std::nullopt;
     const auto [id, owner] = *std::exchange(alone_, std::nullopt);
-    in_work_[id] = {owner, now};
+    in_work_[id] = {owner, now, true};
     return id;
   }
-  if (in_work_.size() >= kMostInWork) return std::nullopt;
+  const bool one_alone = std::any_of(in_work_.begin(), in_work_.end(),
+                                     [](const auto& one) { return one.second.alone; });
+  if (one_alone || in_work_.size() >= kMostInWork) return std::nullopt;
   const auto has_one = [&](const std::string& owner) HYADES_REQUIRES(mutex_) {
     return !owner.empty() && std::any_of(in_work_.begin(), in_work_.end(), [&](const auto& one) {
       return one.second.owner == owner;
@@ -278,10 +280,10 @@ std::optional<PicturesApi::JobAndFrame> PicturesApi::begin_next() {
 }
 
 /// The frame has found no memory beside another one: it goes on when that is over, alone, with what
-/// is `left` of what was taken already. False where there is nothing beside it.
+/// is `left` of what was taken already. False where it was alone.
 bool PicturesApi::put_back(JobAndFrame id, const Wanted& left) {
   const core::MutexLock lock(mutex_);
-  if (in_work_.size() < 2) return false;
+  if (in_work_.at(id).alone) return false;  // others than these have the memory
   for (const auto& [asked, askers] : left) {
     Askers& all = wanted_[id][asked];
     all.insert(all.end(), askers.begin(), askers.end());
@@ -293,6 +295,8 @@ bool PicturesApi::put_back(JobAndFrame id, const Wanted& left) {
   } else {
     alone_ = std::move(waits);
   }
+  // What was beside it may be over by now.
+  (void)pool_.submit([this] { begin_some(); });
   return true;
 }
 
@@ -349,7 +353,7 @@ void PicturesApi::take_files(JobAndFrame id, const FrameNow& now) {
                               : reply_in_memory([&] { return of_file(asked, askers, now, open); });
     if (made.status == 503) {
       open.reset();  // it may be what is missing
-      if (put_back(id, wanted)) break;
+      if (put_back(id, wanted)) return;
     }
     for (const Asker& asker : askers) asker.answer(made);
     wanted.erase(wanted.begin());
@@ -360,7 +364,7 @@ void PicturesApi::take_files(JobAndFrame id, const FrameNow& now) {
 
 void PicturesApi::make_all(JobAndFrame id, const FrameNow& now, const grpc::Status& found,
                            std::shared_ptr<const core::Film> film) {
-  if (lacks_room(found) && put_back(id, {})) return leave(id);
+  if (lacks_room(found) && put_back(id, {})) return;
   core::Image image;
   SampledMask sampled;
   const grpc::Status made = !found.ok() ? found : within_memory([&] {

@@ -127,11 +127,13 @@ class PicturesApi {
   std::map<JobAndFrame, Wanted> wanted_ HYADES_GUARDED_BY(mutex_);
   /// Frames whose turn has not come, and who has asked for them first.
   std::deque<std::pair<JobAndFrame, std::string>> queue_ HYADES_GUARDED_BY(mutex_);
-  /// The frame for which there was no memory beside another: nothing else is begun before it.
+  /// The frame for which there was no memory beside another: nothing else is begun before it, nor
+  /// beside it.
   std::optional<std::pair<JobAndFrame, std::string>> alone_ HYADES_GUARDED_BY(mutex_);
   struct InWork {
     std::string owner;
     Clock::time_point since;
+    bool alone = false;  ///< nothing else is begun beside it
   };
   /// Those whose films or files are being read or shown.
   std::map<JobAndFrame, InWork> in_work_ HYADES_GUARDED_BY(mutex_);

@@ -78,6 +78,11 @@ class UnreadPictures : public ::testing::Test {
     return coming.get();
   }
 
+  /// The world's own server may hold the memory of what it has just answered for a moment more.
+  void await_room() {
+    ASSERT_TRUE(eventually([&] { return answer_to("eve", 79).status == 200; }));
+  }
+
   /// Nobody reads what is asked for with more and more widths.
   void expect_bounded() {
     std::vector<WebReply> unread;
@@ -208,6 +213,7 @@ TEST_F(UnreadPictures, OneCallerWaitsForOneFilmAtATime) {
 TEST_F(UnreadPictures, WhoAsksInALoopKeepsNobodyFromFinishedOnes) {
   world_.farm.options.film_memory = 600'000;
   start(true);
+  await_room();
   std::atomic<bool> stop{false};
   std::atomic<int> shown{0};
   std::vector<std::thread> adas;
@@ -222,6 +228,40 @@ TEST_F(UnreadPictures, WhoAsksInALoopKeepsNobodyFromFinishedOnes) {
     EXPECT_EQ(answer_to("bob", width).status, 200) << width;
   }
   EXPECT_TRUE(eventually([&] { return shown > 10; }));
+  stop = true;
+  for (std::thread& ada : adas) ada.join();
+}
+
+/// What was put back is made alone: the file of who asks without end, which is larger and takes
+/// longer to be read, would else find the room first each time.
+TEST_F(UnreadPictures, WhoAsksForASmallerOneHasHisTurnToo) {
+  world_.farm.options.film_memory = 600'000;
+  start(true);
+  await_room();
+  std::string smaller = FarmWorld::document(1);
+  const std::string size = "[80, 48]";
+  smaller.replace(smaller.find(size), size.size(), "[64, 40]");
+  const uint64_t job = world_.farm.submit_text(smaller);
+  ASSERT_TRUE(world_.farm.wait_for(job, v1::JOB_STATE_DONE));
+  constexpr int kMost = 4000;
+  std::atomic<bool> stop{false};
+  std::atomic<int> asked{0};
+  std::vector<std::thread> adas;
+  for (int i = 0; i < 2; ++i) {
+    adas.emplace_back([&, i] {
+      for (int width = 16 + i; !stop && asked < kMost; width = width < 76 ? width + 2 : 16 + i) {
+        (void)answer_to("ada", width);
+        ++asked;
+      }
+    });
+  }
+  for (int width = 17; width < 57; width += 2) {
+    std::promise<unsigned> answer;
+    ask("bob", std::to_string(job), width,
+        [&](const WebReply& reply) { answer.set_value(reply.status); });
+    EXPECT_EQ(answer.get_future().get(), 200U) << width;
+  }
+  EXPECT_LT(asked, kMost) << "he was served when she had enough";
   stop = true;
   for (std::thread& ada : adas) ada.join();
 }
