@@ -50,7 +50,7 @@ const GalleryJob kJobs[] = {{"quickstart", 320, 144, 10, 0.1},
                             {"media", 64, 32, 64, 0.1},
                             {"god-rays", 224, 112, 10, 0.1},
                             {"cloud", 64, 32, 32, 0.1},
-                            {"sky-shell", 48, 24, 10, 0.06}};
+                            {"sky-shell", 320, 160, 10, 0.1}};
 
 YamlScene small(const GalleryJob& job, const std::string& integrator, int samples) {
   const std::string folder = std::string("jobs/") + job.name;
