@@ -108,7 +108,8 @@ std::optional<LightSample> SphereLight::sample_direct(const Vec3& from, float ti
   if (!(distance > 0.0)) return std::nullopt;
   sample.direction = Vec3(to_light / distance);
   const Vec3 ng(normal);
-  sample.radiance = emitted(ng, -sample.direction);
+  // The rim is seen too, edge-on.
+  sample.radiance = emission().profile ? emitted(ng, -sample.direction) : emission().radiance;
   if (is_black(sample.radiance)) return std::nullopt;
   sample.pdf = cap->pdf();
   sample.distance = static_cast<float>(distance);
