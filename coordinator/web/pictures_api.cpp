@@ -303,9 +303,8 @@ bool PicturesApi::put_back(JobAndFrame id, const Wanted& left) {
 void PicturesApi::take(JobAndFrame id) {
   // As of before the film, so that the picture never claims more than it shows.
   FrameNow now;
-  const grpc::Status status =
-      is_closed() ? grpc::Status(grpc::StatusCode::UNAVAILABLE, "the coordinator ends")
-                  : controller_.queries().frame_now(id.first, id.second, now);
+  if (is_closed()) return end(id, [](const Asked&, const Askers&) { return closing(); });
+  const grpc::Status status = controller_.queries().frame_now(id.first, id.second, now);
   if (!status.ok()) {
     end(id, [&](const Asked&, const Askers&) { return error_reply(status); });
   } else if (is_over(now.frame)) {

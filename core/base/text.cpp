@@ -57,12 +57,13 @@ size_t edit_distance(std::string_view a, std::string_view b) {
 std::optional<std::string> closest_name(std::string_view name,
                                         std::span<const std::string> candidates) {
   if (name.empty() || name.size() > kLongestName) return std::nullopt;
+  const std::string joined = without_joints(name);
   const std::string* best = nullptr;
   size_t best_distance = 0;
   for (const std::string& candidate : candidates) {
     if (candidate.empty() || candidate.size() > kLongestName) continue;
     const size_t allowed = std::max<size_t>(1, std::max(name.size(), candidate.size()) / 3);
-    if (without_joints(candidate) == without_joints(name)) return candidate;
+    if (without_joints(candidate) == joined) return candidate;
     const size_t distance = edit_distance(name, candidate);
     // A single letter is not a misspelling of another one.
     const bool near = distance <= allowed && distance < std::max(name.size(), candidate.size());

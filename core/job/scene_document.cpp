@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstddef>
 
+#include "core/base/text.h"
 #include "core/job/output_path.h"
 #include "core/job/read_values.h"
 
@@ -37,27 +38,14 @@ std::string escaped(std::string_view text) {
   return out;
 }
 
-int hex_digit(char c) {
-  if (c >= '0' && c <= '9') return c - '0';
-  if (c >= 'A' && c <= 'F') return c - 'A' + 10;
-  return -1;
-}
-
+/// Escapes have one spelling, in capitals, so that a document has one name.
 std::optional<std::string> unescaped(std::string_view text) {
-  std::string out;
-  for (size_t i = 0; i < text.size(); ++i) {
-    if (text[i] != '%') {
-      out += text[i];
-      continue;
+  for (size_t at = 0; (at = text.find('%', at)) != std::string_view::npos; ++at) {
+    if (text.substr(at + 1, 2).find_first_of("abcdef") != std::string_view::npos) {
+      return std::nullopt;
     }
-    if (i + 2 >= text.size()) return std::nullopt;
-    const int high = hex_digit(text[i + 1]);
-    const int low = hex_digit(text[i + 2]);
-    if (high < 0 || low < 0) return std::nullopt;
-    out += static_cast<char>(16 * high + low);
-    i += 2;
   }
-  return out;
+  return percent_decoded(text);
 }
 
 /// Takes one ",key=value" in. False: it says nothing that is known.

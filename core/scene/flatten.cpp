@@ -210,12 +210,8 @@ class Flattener {
 
   /// Whether the object or a group around it is placed by keys or expressions.
   bool chain_is_animated() const {
-    const auto animated_step = [](const TransformStep& step) {
-      return !step.vector.is_constant() || !step.angle.is_constant();
-    };
-    return std::any_of(chain_.begin(), chain_.end(), [&](const ObjectDesc* object) {
-      return !object->at.is_constant() ||
-             std::any_of(object->transform.begin(), object->transform.end(), animated_step);
+    return std::any_of(chain_.begin(), chain_.end(), [](const ObjectDesc* object) {
+      return !object->at.is_constant() || is_animated(object->transform);
     });
   }
 

@@ -1,6 +1,5 @@
 #include "core/scene/light_makers.h"
 
-#include <algorithm>
 #include <cmath>
 #include <optional>
 #include <utility>
@@ -95,12 +94,6 @@ Result<LightPtr> make(const SunLightDesc& desc, const LightPlace& place,
                         desc.angle.at(time) * kRadians, setting.world_radius);
 }
 
-bool moves(const LightDesc& desc) {
-  return std::any_of(desc.transform.begin(), desc.transform.end(), [](const TransformStep& step) {
-    return !step.vector.is_constant() || !step.angle.is_constant();
-  });
-}
-
 }  // namespace
 
 Result<LightPtr> make_light(const LightDesc& desc, const LightSetting& setting, SceneCache& cache) {
@@ -124,7 +117,8 @@ Result<std::optional<Lamp>> make_lamp(const LightDesc& desc, const LightSetting&
           if (!(radius > 0.0F)) return std::optional<Lamp>();
           auto source = make(kind, place, setting, cache);
           if (!source) return source.error().in("light '" + desc.name + "'");
-          const bool changes = !kind.at.is_constant() || !kind.radius.is_constant() || moves(desc);
+          const bool changes =
+              !kind.at.is_constant() || !kind.radius.is_constant() || is_animated(desc.transform);
           return std::optional<Lamp>({std::move(*source), radius, changes});
         } else {
           return std::optional<Lamp>();

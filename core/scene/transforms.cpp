@@ -105,6 +105,12 @@ bool is_enough(const std::vector<Mat4>& fine, size_t stride) {
 
 }  // namespace
 
+bool is_animated(const TransformList& steps) {
+  return std::any_of(steps.begin(), steps.end(), [](const TransformStep& step) {
+    return !step.vector.is_constant() || !step.angle.is_constant();
+  });
+}
+
 Bounds transformed(const Mat4& m, const Bounds& box) {
   Bounds bounds;
   if (box.empty()) return bounds;

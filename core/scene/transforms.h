@@ -16,6 +16,9 @@ inline constexpr float kRadians = kPi / 180.0F;
 /// to bottom.
 Mat4 transform_at(const TransformList& steps, const Animated<Vec3>& at, const JobTime& time);
 
+/// Whether any step says something else at some other time.
+bool is_animated(const TransformList& steps);
+
 /// The bounds of `box`, none of it infinite, under `m`; empty ones stay empty.
 Bounds transformed(const Mat4& m, const Bounds& box);
 
