@@ -29,6 +29,7 @@ unsigned mask_of(const Placement& p) {
 }
 
 size_t triangle_count(const Placement& p) {
+  if (p.shape.kind == Shape::Kind::curves) return p.shape.curves->pieces.size();
   return p.shape.kind == Shape::Kind::mesh ? p.shape.mesh->triangles.size() : 1;
 }
 
@@ -37,7 +38,7 @@ enum class Way {
   copied,    ///< as a member of a instancer, by its copies
   direct,    ///< in world space, in the top scene; vertices may move
   shared,    ///< in world space, in the still scene that frames share
-  instance,  ///< its mesh has a scene of its own
+  instance,  ///< its mesh, or its strands, have a scene of their own
 };
 
 /// Depends on the placements alone: never on what was built before. `inside_instancer`: they are
@@ -56,6 +57,11 @@ std::vector<Way> choose_ways(const std::vector<Placement>& placements,
   for (const Placement& p : placements) {
     if (p.instancer != nullptr && !inside_instancer) {
       ways.push_back(Way::copied);
+      continue;
+    }
+    if (p.shape.kind == Shape::Kind::curves) {
+      any_changes = any_changes || p.changes_between_frames;
+      ways.push_back(Way::instance);
       continue;
     }
     const bool mesh = p.shape.kind == Shape::Kind::mesh;
@@ -216,9 +222,14 @@ class WorldBuilder {
       return found;
     }
     auto fresh = std::make_shared<MeshScene>();
-    fresh->buffers = make_mesh_buffers(mesh, nullptr);
     SceneBuilder builder;
-    builder.attach(new_mesh_geometry(builder.device(), *fresh->buffers, kAllRays), 0);
+    if (mesh.kind == Shape::Kind::curves) {
+      fresh->curves = mesh.curves;
+      builder.attach(new_curve_geometry(builder.device(), *fresh->curves, kAllRays), 0);
+    } else {
+      fresh->buffers = make_mesh_buffers(mesh, nullptr);
+      builder.attach(new_mesh_geometry(builder.device(), *fresh->buffers, kAllRays), 0);
+    }
     auto scene = builder.commit();
     if (!scene) return scene.error();
     fresh->scene = *scene;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <cstdint>
 #include <limits>
 #include <optional>
 
@@ -14,6 +15,17 @@ void quadric_bounds_callback(const RTCBoundsFunctionArguments* args) {
       quadric_bounds(object.motion().steps()[args->timeStep], object.placement().shape);
   RTCBounds& out = *args->bounds_o;
   out = {b.lower.x, b.lower.y, b.lower.z, 0.0F, b.upper.x, b.upper.y, b.upper.z, 0.0F};
+}
+
+RTCGeometryType curve_type(CurveBasis basis) {
+  switch (basis) {
+    case CurveBasis::bezier:
+      return RTC_GEOMETRY_TYPE_ROUND_BEZIER_CURVE;
+    case CurveBasis::b_spline:
+      return RTC_GEOMETRY_TYPE_ROUND_BSPLINE_CURVE;
+    default:
+      return RTC_GEOMETRY_TYPE_ROUND_CATMULL_ROM_CURVE;
+  }
 }
 
 /// The nearest distance at which `ray` meets the quadric within its interval, as Embree wants it.
@@ -60,6 +72,16 @@ RTCGeometry new_mesh_geometry(RTCDevice device, const MeshBuffers& buffers, unsi
   rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
                              buffers.triangles, 0, sizeof(buffers.triangles[0]),
                              buffers.mesh().triangles.size());
+  rtcSetGeometryMask(geometry, mask);
+  return geometry;
+}
+
+RTCGeometry new_curve_geometry(RTCDevice device, const CurveSet& curves, unsigned mask) {
+  RTCGeometry geometry = rtcNewGeometry(device, curve_type(curves.basis));
+  rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT4,
+                             curves.points.data(), 0, sizeof(Vec4), curves.points.size());
+  rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT,
+                             curves.pieces.data(), 0, sizeof(uint32_t), curves.pieces.size());
   rtcSetGeometryMask(geometry, mask);
   return geometry;
 }

@@ -8,6 +8,9 @@ namespace hyades::core {
 /// Triangles that share the memory of `buffers`, which must outlive the scene.
 RTCGeometry new_mesh_geometry(RTCDevice device, const MeshBuffers& buffers, unsigned mask);
 
+/// Round curves that share the memory of `curves`, which must outlive the scene.
+RTCGeometry new_curve_geometry(RTCDevice device, const CurveSet& curves, unsigned mask);
+
 /// A quadric (perhaps moving) as user geometry; `object` must outlive the scene at its address.
 RTCGeometry new_quadric_geometry(RTCDevice device, const PlacedObject& object, unsigned mask);
 

@@ -15,9 +15,10 @@ namespace hyades::core {
 
 class InstancerScene;
 
-/// A mesh in its object space: what instances refer to.
+/// A mesh or strands in their object space: what instances refer to.
 struct MeshScene {
-  std::shared_ptr<const MeshBuffers> buffers;
+  std::shared_ptr<const MeshBuffers> buffers;  ///< null for strands
+  std::shared_ptr<const CurveSet> curves;      ///< null for meshes
   std::shared_ptr<const EmbreeScene> scene;
 };
 
@@ -33,16 +34,18 @@ struct StillScene {
   std::shared_ptr<const EmbreeScene> scene;
 };
 
-/// What a MeshScene is of: the mesh, and what it deforms to.
+/// What a MeshScene is of: the mesh, and what it deforms to; or the strands.
 struct MeshKey {
   const TriangleMesh* mesh = nullptr;
+  const CurveSet* curves = nullptr;
   const TriangleMesh* next = nullptr;
   float reach = 1.0F;
   auto operator<=>(const MeshKey&) const = default;
 };
 
 inline MeshKey mesh_key(const Shape& shape) {
-  return {shape.mesh.get(), shape.next.get(), shape.deforms() ? shape.reach : 1.0F};
+  return {shape.mesh.get(), shape.curves.get(), shape.next.get(),
+          shape.deforms() ? shape.reach : 1.0F};
 }
 
 struct GeometryCache::State {

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "core/geometry/curve_set.h"
 #include "core/geometry/mesh.h"
 
 namespace hyades::core {
@@ -34,6 +35,9 @@ std::array<Vec3d, 2> dual_edges(const SurfacePoint& point) {
 }  // namespace
 
 std::optional<Vec4> vertex_color(const SurfacePoint& point) {
+  if (point.curves != nullptr && !point.curves->colors.empty()) {
+    return Vec4(point.curves->color_at(point.primitive, point.barycentrics.x), 1.0F);
+  }
   if (point.mesh == nullptr || point.mesh->colors.empty()) return std::nullopt;
   return between(point.mesh->colors, point);
 }

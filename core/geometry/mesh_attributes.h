@@ -5,7 +5,8 @@
 
 #include "core/geometry/surface_point.h"
 
-/// What the corners of triangles carry besides their place, at a point of a surface.
+/// What the corners of triangles, and the points of strands, carry besides their place, at a point
+/// of a surface.
 namespace hyades::core {
 
 /// The interpolated colour, linear Rec.709 and alpha; nothing where the surface has none.

@@ -80,15 +80,16 @@ Vec3 shading_normal(const Vec3d& n, const Vec3& ng) {
 }  // namespace
 
 SurfacePoint PlacedObject::point(const Ray& ray, const Hit& hit, const CopyPose* copy) const {
-  SurfacePoint p = is_quadric() ? quadric_surface(ray, hit, copy)
-                                : mesh_point(hit.primitive, hit.u, hit.v, ray.time, copy);
+  SurfacePoint p = is_quadric()  ? quadric_surface(ray, hit, copy)
+                   : is_curves() ? piece_point(ray, hit, copy)
+                                 : mesh_point(hit.primitive, hit.u, hit.v, ray.time, copy);
   p.t = hit.t;
   return p;
 }
 
 bool PlacedObject::meet(const Ray& ray, uint32_t primitive, SurfacePoint& point,
                         const CopyPose* copy) const {
-  if (is_quadric()) {
+  if (buffers_ == nullptr) {
     const auto hit = meet(ray, primitive, copy);
     if (hit) point = this->point(ray, *hit, copy);
     return hit.has_value();
@@ -137,6 +138,8 @@ void PlacedObject::fill_mesh_point(SurfacePoint& p, const Hit& hit, const Triang
   const Vec3d offset = e1 * du + e2 * dv;
   p.primitive = hit.primitive;
   p.mesh = &mesh;
+  p.curves = nullptr;
+  p.thickness = 0.0F;
   p.barycentrics = {hit.u, hit.v};
   p.world_to_object =
       copy == nullptr ? pose.world_to_object : (pose.to_object * copy->to_copy).to_mat4();

@@ -90,13 +90,18 @@ PlacedObject::PlacedObject(Placement placement, std::shared_ptr<const MeshBuffer
     return;
   }
   for (const Affine& step : motion_.steps()) {
-    bounds_.include(is_quadric() ? quadric_bounds(step, placement_.shape)
-                                 : transform_bounds(step, buffers_->bounds));
+    if (is_quadric()) {
+      bounds_.include(quadric_bounds(step, placement_.shape));
+    } else {
+      bounds_.include(
+          transform_bounds(step, is_curves() ? placement_.shape.curves->bounds : buffers_->bounds));
+    }
   }
 }
 
 std::optional<Hit> PlacedObject::meet(const Ray& ray, uint32_t primitive,
                                       const CopyPose* copy) const {
+  if (is_curves()) return meet_piece(ray, primitive, copy);
   if (!is_quadric()) {
     return meet_triangle_of(ray, primitive, triangle_at(primitive, ray.time), copy);
   }

@@ -25,14 +25,15 @@ struct CopyPose {
 /// double precision from the primitive and the ray.
 class PlacedObject {
  public:
-  /// A quadric, or a mesh that `buffers` holds in world or object space.
+  /// A quadric, strands, or a mesh that `buffers` holds in world or object space.
   PlacedObject(Placement placement, std::shared_ptr<const MeshBuffers> buffers);
 
   const Placement& placement() const { return placement_; }
-  const MeshBuffers* buffers() const { return buffers_.get(); }  ///< null for quadrics
+  const MeshBuffers* buffers() const { return buffers_.get(); }  ///< null but for meshes
   const Motion& motion() const { return motion_; }
   const Quadric& quadric() const { return quadric_; }
-  bool is_quadric() const { return buffers_ == nullptr; }
+  bool is_quadric() const { return buffers_ == nullptr && !is_curves(); }
+  bool is_curves() const { return placement_.shape.kind == Shape::Kind::curves; }
 
   Affine to_world_at(float time) const { return moves_ ? motion_.at(time) : to_world_; }
   Affine to_object_at(float time) const { return moves_ ? motion_.at(time).inverse() : to_object_; }
@@ -40,8 +41,9 @@ class PlacedObject {
   /// `copy` in what follows: where the copy of a instancer stands that the object belongs to; null:
   /// the object stands in the world itself.
 
-  /// Where the ray's line meets triangle `primitive` (or the quadric: u = v = 0), as distance along
-  /// the ray and barycentrics. Nothing where it does not, by this arithmetic.
+  /// Where the ray's line meets triangle `primitive` (or the quadric: u = v = 0; or piece
+  /// `primitive` of a strand: u is the place along it), as distance along the ray and barycentrics.
+  /// Nothing where it does not, by this arithmetic.
   std::optional<Hit> meet(const Ray& ray, uint32_t primitive, const CopyPose* copy = nullptr) const;
 
   /// The point of a hit.
@@ -78,6 +80,8 @@ class PlacedObject {
                        const CopyPose* copy) const;
   Vec3d mesh_normal(const std::array<uint32_t, 3>& vertices, double u, double v, float time) const;
   Vec3d mesh_tangent(uint32_t primitive, double u, double v, float time) const;
+  std::optional<Hit> meet_piece(const Ray& ray, uint32_t primitive, const CopyPose* copy) const;
+  SurfacePoint piece_point(const Ray& ray, const Hit& hit, const CopyPose* copy) const;
   SurfacePoint quadric_surface(const Ray& ray, const Hit& hit, const CopyPose* copy) const;
   SurfacePoint quadric_place(const Vec3d& near, float time, const Affine& to_world,
                              const Affine& to_object) const;

@@ -42,6 +42,9 @@ Status check_shape(const Shape& shape) {
     }
     return {};
   }
+  if (shape.kind == Shape::Kind::curves) {
+    return shape.curves == nullptr ? Status(Error{"it has no curves"}) : Status();
+  }
   if (!is_positive(shape.radius)) return Error{"its radius must be positive and finite"};
   if (shape.kind == Shape::Kind::cylinder && !is_positive(shape.height)) {
     return Error{"its height must be positive and finite"};
@@ -151,6 +154,9 @@ Status check_placement(const Placement& p) {
   if (Status s = check_shape(p.shape); !s) return s;
   if (Status s = check_matrices(p.to_world); !s) return s;
   const Bounds box = bounds_of(p.shape);
+  if (p.shape.kind == Shape::Kind::curves && !can_be_instanced(p)) {
+    return Error{"its transform makes it flat, or smaller than a hundred-thousandth"};
+  }
   if (p.instancer != nullptr) return check_instancer(p, box);
   if (box.empty()) return {};
   for (const Mat4& m : p.to_world) {
@@ -184,6 +190,7 @@ std::string describe_placement(const Placement& p, size_t number) {
   if (p.shape.kind == Shape::Kind::mesh && p.shape.mesh != nullptr) {
     text += " (" + p.shape.mesh->name + ")";
   }
+  if (p.shape.curves != nullptr) text += " (" + p.shape.curves->name + ")";
   return text;
 }
 

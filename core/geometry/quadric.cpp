@@ -87,6 +87,7 @@ std::optional<double> meet_quadric(const Quadric& q, const Vec3d& origin, const 
   const auto inside = [&](double t) { return t > t_min && t < t_max; };
   switch (q.kind) {
     case Shape::Kind::mesh:
+    case Shape::Kind::curves:
       break;
     case Shape::Kind::sphere: {
       const auto roots = meet_round(origin, direction, q.radius);

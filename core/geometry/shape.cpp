@@ -51,6 +51,9 @@ Bounds bounds_of(const Shape& shape) {
     case Shape::Kind::cylinder:
       b = {{-r, 0.0F, -r}, {r, shape.height, r}};
       break;
+    case Shape::Kind::curves:
+      if (shape.curves != nullptr) b = shape.curves->bounds;
+      break;
   }
   return b;
 }

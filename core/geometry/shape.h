@@ -4,11 +4,13 @@
 #include <cstdint>
 #include <memory>
 
+#include "core/geometry/curve_set.h"
 #include "core/geometry/mesh.h"
 
 namespace hyades::core {
 
-/// A surface in object space: a mesh, or one of the quadrics that are intersected exactly.
+/// A surface in object space: a mesh, one of the quadrics that are intersected exactly, or strands
+/// of hair.
 struct Shape {
   /// Angles turn around +y from +x towards -z; u = angle / 2pi, in [0, 1).
   enum class Kind {
@@ -16,6 +18,7 @@ struct Shape {
     sphere,    ///< around the origin; v = angle from -y / pi: 0 at -y, 1 at +y
     disk,      ///< in the plane y = 0 around the origin, normal +y; v = r / radius
     cylinder,  ///< open tube around the y axis, y in [0, height], normal outwards; v = y / height
+    curves,    ///< u = 0 at the roots of strands, 1 at their tips; v as around a cylinder's axis
   };
   Kind kind = Kind::mesh;
   std::shared_ptr<const TriangleMesh> mesh;  ///< when the shutter opens
@@ -24,6 +27,7 @@ struct Shape {
   /// `reach` of the way. Null: it keeps its form.
   std::shared_ptr<const TriangleMesh> next;
   float reach = 1.0F;  ///< above 0, at most 1
+  std::shared_ptr<const CurveSet> curves;
   float radius = 1.0F;
   float height = 1.0F;
 

@@ -31,7 +31,7 @@ Ray segment(const Vec3& from, const Vec3& to, float time, double gap) {
 }  // namespace
 
 Vec3 offset_position(const SurfacePoint& p, const Vec3& direction) {
-  const float side = glm::dot(direction, p.ng) >= 0.0F ? p.clearance : -p.clearance;
+  const float side = glm::dot(direction, p.ng) >= 0.0F ? p.clearance : -p.clearance - p.thickness;
   return p.position + p.ng * side;
 }
 

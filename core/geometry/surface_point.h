@@ -7,6 +7,7 @@
 
 namespace hyades::core {
 
+struct CurveSet;
 struct TriangleMesh;
 
 /// A point on a surface, in world space.
@@ -22,20 +23,24 @@ struct SurfacePoint {
   Vec2 uv{0.0F};
   float t = 0.0F;     ///< distance along the ray that found it
   float time = 0.0F;  ///< shutter time 0..1
-  float clearance =
-      0.0F;  ///< distance along +-ng beyond which rays no longer meet this surface [length]
+  /// Distance along +-ng beyond which rays no longer meet this surface [length].
+  float clearance = 0.0F;
+  /// Of strands: how far their other side is, where rays against ng begin [length]; else 0.
+  float thickness = 0.0F;
   uint32_t object = 0;     ///< index of the placement
-  uint32_t primitive = 0;  ///< triangle index; 0 for quadrics
+  uint32_t primitive = 0;  ///< index of the triangle or of the strand's piece; 0 for quadrics
   /// What the triangle belongs to, for the attributes of its corners (mesh_attributes.h); null for
-  /// quadrics. Lives as long as the world does.
+  /// what is no mesh. Lives as long as the world does.
   const TriangleMesh* mesh = nullptr;
-  Vec2 barycentrics{0.0F};  ///< of corners 1 and 2
+  const CurveSet* curves = nullptr;  ///< what a strand belongs to; as `mesh`
+  Vec2 barycentrics{0.0F};  ///< of corners 1 and 2; of strands x is the place along the piece, 0..1
   float outside_index =
       1.0F;  ///< of refraction, of what is on the side of ng; who goes there knows
   Mat4 world_to_object{1.0F};  ///< at `time`
 };
 
-/// `p` moved off its surface by its clearance, to the side that `direction` points to.
+/// `p` moved off its surface by its clearance, to the side that `direction` points to: through
+/// strands, which are thin.
 Vec3 offset_position(const SurfacePoint& p, const Vec3& direction);
 
 /// A ray that starts at `p`, on the side of it that `direction` (unit) points to, without meeting

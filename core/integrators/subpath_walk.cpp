@@ -26,6 +26,10 @@ double solid_angle_ratio(const ShadedSurface& surface, const Vec3& wo, const Bsd
 PathVertex* add_vertex(Subpath& path, RandomWalk& walk, ScatteringPlace& place) {
   if (!walk.next(place)) return nullptr;
   const bool on_surface = place.object != nullptr;
+  const bool on_strand = on_surface && place.point.curves != nullptr;
+  // A strand sends light on from its whole width, wherever it was met: where a path from the light
+  // meets it is not where the camera sees it. So only paths from the camera scatter at strands.
+  if (on_strand && walk.mode() == TransportMode::importance) return nullptr;
   PathVertex& v = path.add(on_surface ? PathVertex::Kind::surface : PathVertex::Kind::medium);
   v.position = place.position;
   if (on_surface) {
@@ -41,6 +45,7 @@ PathVertex* add_vertex(Subpath& path, RandomWalk& walk, ScatteringPlace& place) 
   v.throughput = segment.throughput;
   v.around = segment.around;
   v.density = density_at(segment, v, before.position);
+  if (on_strand) return &v;  // no strategy has it, or what is before it, on the light's side
   v.edge = segment.specular ? 0.0 : 1.0;
   v.beyond = before.chain / (before.density * before.density);
   return &v;

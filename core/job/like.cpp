@@ -17,7 +17,7 @@ namespace {
 /// Keys of which an entry has one: writing any of them replaces what `like` would bring of the
 /// whole row.
 const std::array<std::vector<std::string>, 3> kEither = {{
-    {"shape", "mesh", "instance", "group"},
+    {"shape", "mesh", "curves", "instance", "group"},
     {"metal", "eta", "k", "color"},
     {"anisotropic", "roughness_along"},
 }};

@@ -302,6 +302,31 @@ struct TwoSidedDesc {
   }
 };
 
+/// Strands of hair and fur.
+struct HairDesc {
+  static constexpr MaterialTraits kTraits{.type = "hair", .shared = MaterialTraits::Shared::solid};
+  std::optional<ColorInput> color;          ///< of much hair; counts in place of what follows
+  std::optional<Animated<Rgb>> absorption;  ///< per radius of a strand; in place of what follows
+  Animated<float> eumelanin{1.3F};          ///< concentration of black and brown pigment
+  Animated<float> pheomelanin{0.0F};        ///< of red and yellow
+  ScalarInput roughness{Animated<float>(0.3F), {}};
+  ScalarInput radial_roughness{Animated<float>(0.3F), {}};
+  Animated<float> ior{1.55F};
+  Animated<float> tilt{2.0F};  ///< of the scales
+
+  template <class Self, class Visitor>
+  static void fields(Self& self, Visitor& visit) {
+    visit.color_input("color", self.color, kUnitInterval);
+    visit.color("absorption", self.absorption, kNotNegative);
+    visit.animated("eumelanin", self.eumelanin, kNotNegative);
+    visit.animated("pheomelanin", self.pheomelanin, kNotNegative);
+    visit.scalar_input("roughness", self.roughness, kUnitInterval);
+    visit.scalar_input("radial_roughness", self.radial_roughness, kUnitInterval);
+    visit.animated("ior", self.ior, {1.0, 100.0});
+    visit.animated("tilt", self.tilt, Range{-45.0, 45.0}.in("degrees"));
+  }
+};
+
 /// Lets light through as if nothing were there.
 struct NullDesc {
   static constexpr MaterialTraits kTraits{
@@ -320,9 +345,10 @@ struct BlackDesc {
   static void fields(Self& /*self*/, Visitor& /*visit*/) {}
 };
 
-using MaterialKind = std::variant<LambertDesc, PrincipledDesc, DielectricDesc, ThinDielectricDesc,
-                                  ConductorDesc, GlossyDesc, MirrorDesc, DiffuseTransmissionDesc,
-                                  MixDesc, CoatDesc, SheenDesc, TwoSidedDesc, NullDesc, BlackDesc>;
+using MaterialKind =
+    std::variant<LambertDesc, PrincipledDesc, DielectricDesc, ThinDielectricDesc, ConductorDesc,
+                 GlossyDesc, MirrorDesc, DiffuseTransmissionDesc, MixDesc, CoatDesc, SheenDesc,
+                 TwoSidedDesc, HairDesc, NullDesc, BlackDesc>;
 
 inline const std::array<std::string, 2> kMaterialSides = {"both", "front"};
 

@@ -62,13 +62,16 @@ struct DisplacementDesc {
 inline const std::array<std::string, 5> kShapeNames = {"sphere", "rectangle", "disk", "box",
                                                        "cylinder"};
 inline const std::array<std::string, 3> kMeshNormalsNames = {"file", "flat", "smooth"};
+inline const std::array<std::string, 3> kCurveBasisNames = {"catmull-rom", "bezier", "b-spline"};
 
 struct ObjectDesc {
   std::string name;
   SourceLocation where;
-  std::string shape;  ///< of kShapeNames, mesh, instance or group
-  std::string mesh;   ///< file, or one for each frame (mesh_files.h)
-  std::string part;   ///< mesh: the material of the file whose triangles are meant; empty: all
+  std::string shape;                        ///< of kShapeNames, mesh, curves, instance or group
+  std::string mesh;                         ///< file, or one for each frame (mesh_files.h)
+  std::string curves;                       ///< file of strands
+  std::string basis = kCurveBasisNames[0];  ///< curves: what their points mean
+  std::string part;  ///< mesh: the material of the file whose triangles are meant; empty: all
   std::string instance_of;            ///< name in Job::groups
   std::string places;                 ///< instance: file of where copies stand; empty: one, here
   std::vector<ObjectDesc> children;   ///< group written in place
@@ -105,6 +108,10 @@ struct ObjectDesc {
       visit.file("places", self.places);
     } else if (self.shape == "group") {
       visit.children("group", self.children);
+    } else if (self.shape == "curves") {
+      visit.file("curves", self.curves);
+      visit.enter_section("objects.curves");
+      visit.choice("basis", self.basis, kCurveBasisNames);
     } else if (!self.shape.empty()) {
       fields_of_shape(self, visit);
       visit.enter_section("objects.bodies");

@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include <memory>
 #include <string>
 #include <utility>
@@ -39,6 +41,22 @@ void check_keys(MapReader& reader, PrincipledDesc& principled) {
                     std::string(other) +
                         " and a subsurface are both there, expected one of them: "
                         "with a subsurface light goes in anyway");
+  }
+}
+
+void check_keys(MapReader& reader, HairDesc& /*hair*/) {
+  const char* const pigment = reader.has("eumelanin") ? "eumelanin" : "pheomelanin";
+  const char* first = reader.has("color") ? "color" : nullptr;
+  for (const char* key : {"absorption", pigment}) {
+    if (!reader.has(key)) continue;
+    if (first != nullptr) {
+      reader.complain(reader.where_of(key),
+                      fmt::format("{} and {} are both there, expected one of color, absorption and "
+                                  "pigments",
+                                  first, key));
+      return;
+    }
+    first = key;
   }
 }
 

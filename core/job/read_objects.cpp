@@ -20,7 +20,7 @@ void check_keys(MapReader& reader, EmitDesc& /*emit*/) {
 void check_keys(MapReader& reader, ObjectDesc& object) {
   const std::string& shape = object.shape;
   if (shape.empty()) return;
-  const bool is_shape = shape != "instance" && shape != "group";
+  const bool is_shape = shape != "instance" && shape != "group" && shape != "curves";
   for (const char* key : {"interior", "exterior", "priority"}) {
     if (has_inside(object) || !is_shape || !reader.has(key)) continue;
     reader.complain(
@@ -42,7 +42,7 @@ namespace {
 
 void read_object_list(MapReader& reader, std::vector<ObjectDesc>& objects);
 
-constexpr std::array<const char*, 4> kKinds = {"shape", "mesh", "instance", "group"};
+constexpr std::array<const char*, 5> kKinds = {"shape", "mesh", "curves", "instance", "group"};
 
 /// What somebody may have meant who did not say what an object is.
 std::string likely_kind(const MapReader& reader) {
@@ -69,9 +69,10 @@ std::string read_shape(MapReader& reader) {
     shape.clear();
     reader.choice("shape", shape, kShapeNames);
   } else if (shape.empty() && !reader.has_empty()) {
-    reader.complain(reader.where(),
-                    fmt::format("{} has none of shape, mesh, instance and group, expected one{}",
-                                reader.what(), likely_kind(reader)));
+    reader.complain(
+        reader.where(),
+        fmt::format("{} has none of shape, mesh, curves, instance and group, expected one{}",
+                    reader.what(), likely_kind(reader)));
   }
   return shape;
 }
@@ -94,12 +95,12 @@ void list_keys(MapReader& reader) {
   ObjectDesc object;
   reader.tell("shape", {.takes = "choice", .names = {kShapeNames.begin(), kShapeNames.end()}});
   for (const char* shape :
-       {"sphere", "rectangle", "disk", "box", "cylinder", "mesh", "instance", "group"}) {
+       {"sphere", "rectangle", "disk", "box", "cylinder", "mesh", "curves", "instance", "group"}) {
     object.shape = shape;
     reader.enter_type("objects." + object.shape);
     ObjectDesc::fields(object, reader);
     reader.enter_section("objects");
-    for (const char* kind : {"mesh", "instance", "group"}) {
+    for (const char* kind : {"mesh", "curves", "instance", "group"}) {
       if (object.shape == kind) reader.require(kind, "");
     }
   }

@@ -32,7 +32,7 @@ constexpr std::array<SceneKey, 3> kSceneKeys = {{
     {"obj", {".obj", ".obj"}},
 }};
 constexpr std::array<std::string_view, 2> kAnimationKeys = {"animation", "loop"};
-constexpr std::array<const char*, 4> kOtherKinds = {"shape", "mesh", "instance", "group"};
+constexpr std::array<const char*, 5> kOtherKinds = {"shape", "mesh", "curves", "instance", "group"};
 constexpr std::array<const char*, 4> kBroughtSections = {"textures", "materials", "media",
                                                          "groups"};
 

@@ -28,6 +28,7 @@ constexpr auto kOtherWords = std::to_array<OtherWord>({
     {"translucent", "diffuse-transmission"},
     {"clearcoat", "coat"},
     {"velvet", "sheen"},
+    {"fur", "hair"},
     {"blend", "mix"},
     {"emission", "lambert", "; what an object gives off is its 'emit'"},
     {"emissive", "lambert", "; what an object gives off is its 'emit'"},

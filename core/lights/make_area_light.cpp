@@ -96,6 +96,7 @@ double surface_area(const World& world, uint32_t object) {
     case Shape::Kind::cylinder:
       return tube_area(m, radius, double{shape.height});
     case Shape::Kind::mesh:
+    case Shape::Kind::curves:  // which do not shine
       break;
   }
   return mesh_areas(shape, linear).total;

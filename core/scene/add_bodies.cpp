@@ -50,6 +50,7 @@ double volume_of(const Placement& placement, SceneCache& cache) {
     case Shape::Kind::mesh:
       return scale * std::abs(cache.closure(shape.mesh).volume);
     case Shape::Kind::disk:
+    case Shape::Kind::curves:
       break;
   }
   return 0.0;

@@ -6,12 +6,14 @@
 #include <map>
 #include <memory>
 #include <set>
+#include <string>
 #include <string_view>
 #include <unordered_map>
 #include <utility>
 #include <variant>
 
 #include "core/job/mesh_files.h"
+#include "core/job/references.h"
 #include "core/scene/appearance.h"
 #include "core/scene/displacement.h"
 #include "core/scene/shape_makers.h"
@@ -33,7 +35,9 @@ class Flattener {
     for (const MaterialDesc& material : job.materials) {
       const auto* principled = std::get_if<PrincipledDesc>(&material.kind);
       if (principled != nullptr && principled->emits()) shining_.emplace(material.name, principled);
+      if (std::holds_alternative<HairDesc>(material.kind)) hair_.insert(material.name);
     }
+    add_made_of_hair();
   }
 
   Status add_all(const std::vector<ObjectDesc>& objects, const std::string& prefix,
@@ -94,6 +98,14 @@ class Flattener {
     flat.material = look;
     flat.body = flat_.size();
     flat.emit = emission_of(object, look);
+    if (hair_.contains(look) && object.shape != "curves") {
+      return at(object, Error{"object '" + name + "' is of the material '" + look +
+                              "', which is for strands of hair: expected curves"});
+    }
+    if (flat.emit && object.shape == "curves") {
+      return at(object, Error{"object '" + name + "' is of the material '" + look +
+                              "', which gives off light: curves cannot"});
+    }
     flat.placement.shape = *shape;
     flat.placement.instancer = instancer_;
     flat.placement.visible_to_camera = visible;
@@ -148,6 +160,18 @@ class Flattener {
   bool varies(const std::string& medium) const {
     return std::any_of(job_.media.begin(), job_.media.end(),
                        [&](const MediumDesc& desc) { return desc.name == medium && desc.varying; });
+  }
+
+  /// Materials that are mixed or layered of hair are hair.
+  void add_made_of_hair() {
+    for (size_t known = 0; known != hair_.size();) {
+      known = hair_.size();
+      for (const MaterialDesc& material : job_.materials) {
+        for (const std::string& part : names_in(material, NameKind::material)) {
+          if (hair_.contains(part)) hair_.insert(material.name);
+        }
+      }
+    }
   }
 
   /// The object's own, else that of its material.
@@ -233,6 +257,7 @@ class Flattener {
   MeshExtras extras_;
   std::map<std::string_view, const GroupDesc*> groups_;
   std::map<std::string_view, const PrincipledDesc*> shining_;  ///< materials that do
+  std::set<std::string> hair_;                                 ///< materials for strands
   /// Of objects with overrides in the chain: the materials for which they were asked.
   std::unordered_map<const ObjectDesc*, std::set<std::string>> overridden_;
   std::vector<const ObjectDesc*> chain_;  ///< from the outermost group to the object in hand

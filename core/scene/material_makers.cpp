@@ -2,6 +2,7 @@
 
 #include <variant>
 
+#include "core/materials/make_hair.h"
 #include "core/materials/make_layers.h"
 #include "core/materials/make_matt.h"
 #include "core/scene/principled_maker.h"
@@ -133,6 +134,28 @@ Result<MaterialPtr> make(const TwoSidedDesc& desc, Appearance& looks) {
   auto back = looks.material(desc.back);
   if (!back) return back;
   return make_two_sided(*front, *back);
+}
+
+Result<MaterialPtr> make(const HairDesc& desc, Appearance& looks) {
+  const JobTime& time = looks.time();
+  HairParams params;
+  if (desc.color) {
+    auto color = looks.color(*desc.color);
+    if (!color) return color.error();
+    params.color = *color;
+  }
+  params.absorption = desc.absorption
+                          ? desc.absorption->at(time)
+                          : melanin_absorption(desc.eumelanin.at(time), desc.pheomelanin.at(time));
+  auto roughness = looks.scalar(desc.roughness);
+  if (!roughness) return roughness.error();
+  params.roughness = *roughness;
+  auto radial_roughness = looks.scalar(desc.radial_roughness);
+  if (!radial_roughness) return radial_roughness.error();
+  params.radial_roughness = *radial_roughness;
+  params.ior = desc.ior.at(time);
+  params.tilt = desc.tilt.at(time);
+  return make_hair(params);
 }
 
 Result<MaterialPtr> make(const NullDesc&, Appearance&) { return make_null(); }

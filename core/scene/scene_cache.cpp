@@ -7,6 +7,7 @@
 #include "core/base/machine.h"
 #include "core/base/text.h"
 #include "core/base/udim.h"
+#include "core/geometry/read_hair.h"
 #include "core/geometry/read_places.h"
 
 namespace hyades::core {
@@ -90,6 +91,12 @@ Result<std::shared_ptr<const TriangleMesh>> SceneCache::frame_mesh(const std::st
 Result<std::shared_ptr<const std::vector<PlaceMatrix>>> SceneCache::places(
     const std::string& file) {
   return places_.get(file, [&] { return read_places(assets_, file, usable_memory()); });
+}
+
+Result<std::shared_ptr<const CurveSet>> SceneCache::curves(const std::string& file,
+                                                           CurveBasis basis) {
+  return curves_.get({file, basis},
+                     [&] { return read_hair(assets_, file, basis, usable_memory()); });
 }
 
 Result<std::shared_ptr<const Image>> SceneCache::image(const std::string& file, ColorSpace space) {

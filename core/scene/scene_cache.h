@@ -11,6 +11,7 @@
 
 #include "core/base/assets.h"
 #include "core/geometry/closed_mesh.h"
+#include "core/geometry/curve_set.h"
 #include "core/geometry/read_mesh.h"
 #include "core/geometry/world.h"
 #include "core/image/read_image.h"
@@ -80,6 +81,9 @@ class SceneCache {
   /// Where the copies of a instancer stand.
   Result<std::shared_ptr<const std::vector<PlaceMatrix>>> places(const std::string& file);
 
+  /// The strands of a file whose points mean `basis`.
+  Result<std::shared_ptr<const CurveSet>> curves(const std::string& file, CurveBasis basis);
+
   /// Whether there is such a file.
   bool exists(const std::string& file) { return assets_.exists(file); }
 
@@ -148,6 +152,7 @@ class SceneCache {
   WeakMap<std::pair<std::string, MeshUse>, TriangleMesh> frame_meshes_;
   WeakMap<std::string, MeshParts> frame_parts_;
   OnceMap<std::string, std::vector<PlaceMatrix>> places_;
+  OnceMap<std::pair<std::string, CurveBasis>, CurveSet> curves_;
   std::mutex recent_parts_mutex_;
   /// So that the parts of a frame's file come from one reading. Guarded by recent_parts_mutex_.
   std::deque<std::shared_ptr<const MeshParts>> recent_parts_;

@@ -106,14 +106,32 @@ Result<Shape> mesh(const ObjectDesc& object, const ShapeSetting& setting) {
   return shape_of(*loaded);
 }
 
+constexpr std::array<NameRow<CurveBasis>, 3> kCurveBases = {{
+    {"catmull-rom", CurveBasis::catmull_rom},
+    {"bezier", CurveBasis::bezier},
+    {"b-spline", CurveBasis::b_spline},
+}};
+
+Result<Shape> curves(const ObjectDesc& object, const ShapeSetting& setting) {
+  const auto basis = look_up(kCurveBases, object.basis, "basis of curves");
+  if (!basis) return basis.error();
+  auto loaded = setting.cache.curves(object.curves, (*basis)->value);
+  if (!loaded) return loaded.error();
+  Shape shape;
+  shape.kind = Shape::Kind::curves;
+  shape.curves = *loaded;
+  return shape;
+}
+
 using ShapeMaker = Result<Shape> (*)(const ObjectDesc&, const ShapeSetting&);
-constexpr std::array<NameRow<ShapeMaker>, 6> kShapeMakers = {{
+constexpr std::array<NameRow<ShapeMaker>, 7> kShapeMakers = {{
     {"sphere", quadric<Shape::Kind::sphere>},
     {"rectangle", rectangle},
     {"disk", quadric<Shape::Kind::disk>},
     {"box", box},
     {"cylinder", quadric<Shape::Kind::cylinder>},
     {"mesh", mesh},
+    {"curves", curves},
 }};
 
 }  // namespace
@@ -158,5 +176,6 @@ MeshExtras mesh_extras_of(const Job& job) {
 
 std::vector<std::string> made_shapes() { return names_of(kShapeMakers); }
 std::vector<std::string> made_mesh_normals() { return names_of(kMeshNormals); }
+std::vector<std::string> made_curve_bases() { return names_of(kCurveBases); }
 
 }  // namespace hyades::core

@@ -43,5 +43,6 @@ MeshExtras mesh_extras_of(const Job& job);
 /// The names that can be made: those of core/job/object_desc.h.
 std::vector<std::string> made_shapes();
 std::vector<std::string> made_mesh_normals();
+std::vector<std::string> made_curve_bases();
 
 }  // namespace hyades::core

@@ -65,6 +65,18 @@ objects:
   ball: {shape: sphere, radius: 0.4, at: [0.3, 0.4, 0], material: shiny}
   lamp: {shape: rectangle, size: [0.5, 0.5], transform: [{rotate_x: 180}], at: [0, 1.95, 0], emit: {radiance: 12}}
 )"},
+      {"hair", R"(
+camera: {look_from: [0, 1.2, 3.4], look_at: [0, 0.8, 0], fov: 40}
+materials:
+  white: {type: lambert, color: [0.7, 0.6, 0.5]}
+  blond: {type: hair, eumelanin: 0.2, roughness: 0.4, radial_roughness: 0.5}
+objects:
+  floor: {shape: rectangle, size: [4, 4], material: white}
+  head: {shape: sphere, radius: 0.5, at: [0, 0.9, 0], material: white}
+  fur: {curves: fur.hair, at: [0, 0.9, 0], material: blond}
+  lamp: {shape: rectangle, size: [1, 1], transform: [{rotate_x: 180}], at: [0.6, 2.2, 0.5], emit: {radiance: 8}}
+environment: {color: [0.1, 0.15, 0.2]}
+)"},
       {"point_and_spot", R"(
 camera: {look_from: [0, 1, 3.4], look_at: [0, 0.8, 0], fov: 40}
 materials:

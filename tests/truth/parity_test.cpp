@@ -3,10 +3,13 @@
 
 #include <gtest/gtest.h>
 
+#include <fstream>
 #include <string>
 #include <vector>
 
+#include "core/geometry/read_hair.h"
 #include "core/image/write_image.h"
+#include "tests/support/random.h"
 #include "tests/support/temp_folder.h"
 #include "tests/truth/parity_scenes.h"
 #include "tests/truth/replicates.h"
@@ -26,8 +29,25 @@ std::vector<ParityScene> all_scenes() {
   return scenes;
 }
 
-/// sun.exr, a sky with a sun: 2 x 2 pixels of 64 x 32, a thousand times as bright as the rest; and
-/// board.png, squares of 8 x 8 pixels.
+/// Two hundred thick strands that stand on a ball of radius 0.5 about the origin.
+core::StrandList tuft() {
+  core::StrandList list;
+  Random random(5);
+  for (int s = 0; s < 200; ++s) {
+    const core::Vec3 up = random.direction();
+    const core::Vec3 bend = random.direction();
+    for (int i = 0; i < 4; ++i) {
+      const float along = 0.15F * static_cast<float>(i);
+      list.points.push_back((0.5F + along) * up + along * along * bend);
+      list.radii.push_back(0.015F);
+    }
+    list.sizes.push_back(4);
+  }
+  return list;
+}
+
+/// fur.hair; sun.exr, a sky with a sun: 2 x 2 pixels of 64 x 32, a thousand times as bright as the
+/// rest; and board.png, squares of 8 x 8 pixels.
 const std::string& folder_with_pictures() {
   static const TempFolder folder;
   static const std::string path = [] {
@@ -51,6 +71,9 @@ const std::string& folder_with_pictures() {
       }
     }
     EXPECT_TRUE(core::write_png(folder.file("board.png"), board).ok());
+    const core::Bytes fur = core::hair_bytes(tuft());
+    std::ofstream(folder.file("fur.hair"), std::ios::binary)
+        .write(fur.chars(), static_cast<std::streamsize>(fur.size()));
     return folder.path().string();
   }();
   return path;
@@ -58,8 +81,9 @@ const std::string& folder_with_pictures() {
 
 YamlScene scene_with(const ParityScene& scene, const std::string& integrator, int samples) {
   const std::string text = scene.text;
-  const bool made =
-      text.find("sun.exr") != std::string::npos || text.find("board.png") != std::string::npos;
+  const bool made = text.find("sun.exr") != std::string::npos ||
+                    text.find("board.png") != std::string::npos ||
+                    text.find("fur.hair") != std::string::npos;
   return YamlScene("hyades: 1\nname: parity\nfilm: {size: [24, 18], filter: {" +
                        std::string(scene.filter) +
                        "}}\n"

@@ -431,6 +431,39 @@ class TwoSided(Material):
 
 
 @dataclass(kw_only=True, eq=False, repr=False)
+class Hair(Material):
+    """Hair."""
+
+    TYPE: ClassVar[str] = "hair"
+    SECTIONS: ClassVar[tuple[str, ...]] = ("materials.hair", "materials.solids")
+    color: ColorInput | None = key("colour or texture", low=0, high=1)
+    """What much of this hair looks like; of a single strand less is seen. Range: 0 to 1. Default:
+    none."""
+    absorption: Color | None = key("colour, animated", low=0)
+    """What light loses on the way of a strand's radius. Range: >= 0. Default: none."""
+    eumelanin: Number = key("number, animated", 1.3, low=0)
+    """Pigment of brown and black hair: 0.3 is blond, 1.3 brown, 8 black. Range: >= 0."""
+    pheomelanin: Number = key("number, animated", 0, low=0)
+    """Pigment of red hair. Range: >= 0."""
+    roughness: NumberInput = key("number or texture", 0.3, low=0, high=1)
+    """How widely light is spread along the strand. Range: 0 to 1."""
+    radial_roughness: NumberInput = key("number or texture", 0.3, low=0, high=1)
+    """How widely around it. Range: 0 to 1."""
+    ior: Number = key("number, animated", 1.55, low=1, high=100)
+    """Index of refraction. Range: 1 to 100."""
+    tilt: Number = key("number, animated", 2, low=-45, high=45)
+    """How far the scales stand off, towards the tip: it moves the highlight towards the root. Unit:
+    degrees. Range: -45 to 45."""
+    opacity: NumberInput = key("number or texture", 1, low=0, high=1)
+    """How much of it is there: leaves from an image of a leaf, fading smoke. The rest of the light
+    passes straight on, to the camera and in shadows, as if nothing were there, and counts no event.
+    A mix of materials with an opacity has the mean of theirs. What is not there does not shine
+    either: the opacity of a lamp scales its light. Range: 0 to 1."""
+    sides: Literal["both", "front"] = key("choice", "both", names=("both", "front"))
+    """Which sides of an object the camera sees; see docs/job.md."""
+
+
+@dataclass(kw_only=True, eq=False, repr=False)
 class NullMaterial(Material):
     """NullMaterial."""
 

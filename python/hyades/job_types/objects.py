@@ -226,6 +226,21 @@ class Mesh(Object):
 
 
 @dataclass(kw_only=True, eq=False, repr=False)
+class Curves(Object):
+    """Curves."""
+
+    TYPE: ClassVar[str] = "curves"
+    SECTIONS: ClassVar[tuple[str, ...]] = ("objects.curves", "objects")
+    curves: File = key("file", required=True)
+    """Strands of hair, fur or grass: see Curves. Range: HAIR. Default: none."""
+    basis: Literal["catmull-rom", "bezier", "b-spline"] = key(
+        "choice", "catmull-rom", names=("catmull-rom", "bezier", "b-spline"),
+    )
+    """What a strand's points mean: the curve goes through all of them (at least 2); cubic pieces of
+    Bezier's that share their ends (4, 7, 10, ...); a uniform cubic B-spline (at least 4)."""
+
+
+@dataclass(kw_only=True, eq=False, repr=False)
 class Instance(Object):
     """Instance."""
 

@@ -89,7 +89,7 @@ TEST(Complaints, AMistakeInAnEntryDoesNotMakeItsNameUnknown) {
       "job.yaml:2:40: color is '7', expected a number from 0 to 1\n"
       "job.yaml:2:57: type is 'lambart', expected lambert, principled, dielectric, "
       "thin-dielectric, conductor, glossy, mirror, diffuse-transmission, mix, coat, sheen, "
-      "two-sided, null or black, did you mean 'lambert'?\n"
+      "two-sided, hair, null or black, did you mean 'lambert'?\n"
       "job.yaml:4:23: objects is '3', expected a map of names, such as {name: {...}}\n");
 }
 
@@ -102,8 +102,10 @@ TEST(Complaints, ThingsThatContainThemselves) {
   EXPECT_EQ(complaints("groups: {g: {objects: {x: {group: {objects: {y: {instance: g}}}}}}}\n"),
             "job.yaml:2:13: group 'g' contains itself\n");
   EXPECT_EQ(complaints("objects: {a: {like: b}, b: {like: a}}\n"),
-            "job.yaml:2:14: object 'a' has none of shape, mesh, instance and group, expected one\n"
-            "job.yaml:2:28: object 'b' has none of shape, mesh, instance and group, expected one\n"
+            "job.yaml:2:14: object 'a' has none of shape, mesh, curves, instance and group, "
+            "expected one\n"
+            "job.yaml:2:28: object 'b' has none of shape, mesh, curves, instance and group, "
+            "expected one\n"
             "job.yaml:2:35: 'b' is like 'a', which in the end is like itself\n");
 }
 
@@ -130,6 +132,21 @@ TEST(Complaints, KeysThatExcludeEachOther) {
             "them\n");
   EXPECT_EQ(complaints("camera: {look_from: [1, 2, 3], look_at: [1, 2, 3]}\n"),
             "job.yaml:2:41: look_from and look_at are both [1, 2, 3], expected two points\n");
+}
+
+TEST(Complaints, HairHasOneColor) {
+  const auto told = [](const std::string& keys) {
+    return complaints("materials: {m: {type: hair, " + keys + "}}\n");
+  };
+  EXPECT_EQ(told("color: 0.5"), "");
+  EXPECT_EQ(told("absorption: 3"), "");
+  EXPECT_EQ(told("eumelanin: 1, pheomelanin: 2"), "");
+  EXPECT_EQ(told("color: 0.5, absorption: 3"),
+            "job.yaml:2:53: color and absorption are both there, expected one of color, absorption "
+            "and pigments\n");
+  EXPECT_EQ(told("pheomelanin: 2, absorption: 3"),
+            "job.yaml:2:42: absorption and pheomelanin are both there, expected one of color, "
+            "absorption and pigments\n");
 }
 
 TEST(Complaints, DirectionsThatAreNone) {

@@ -178,12 +178,12 @@ TEST(Complaints, TypesAndChoicesListWhatThereIs) {
       complaints("materials: {a: {type: lambart}}\n"),
       "job.yaml:2:23: type is 'lambart', expected lambert, principled, "
       "dielectric, thin-dielectric, conductor, glossy, mirror, diffuse-transmission, mix, coat, "
-      "sheen, two-sided, null or black, did you mean 'lambert'?\n");
+      "sheen, two-sided, hair, null or black, did you mean 'lambert'?\n");
   EXPECT_EQ(
       complaints("materials: {a: {color: 0.5}}\n"),
       "job.yaml:2:16: material 'a' has no 'type', expected one of lambert, principled, dielectric, "
       "thin-dielectric, conductor, glossy, mirror, diffuse-transmission, mix, coat, sheen, "
-      "two-sided, null or black\n");
+      "two-sided, hair, null or black\n");
   EXPECT_EQ(complaints("materials: {a: {type: conductor, metal: sliver}}\n"),
             "job.yaml:2:41: metal is 'sliver', expected aluminium, brass, chromium, cobalt, "
             "copper, gold, iron, nickel, palladium, platinum, silver, titanium or tungsten, did "

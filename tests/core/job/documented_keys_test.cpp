@@ -149,7 +149,7 @@ const std::map<std::string, Place>& places() {
     }
     p["materials"] = named("materials", "lambert", {});
     for (const char* type : {"lambert", "dielectric", "thin-dielectric", "conductor", "glossy",
-                             "mirror", "principled", "diffuse-transmission", "sheen"}) {
+                             "mirror", "principled", "diffuse-transmission", "sheen", "hair"}) {
       p[std::string("materials.") + type] = named("materials", type, {});
     }
     p["materials.mix"] = named("materials", "mix", {{"first", "steel"}, {"second", "clay"}});
@@ -184,6 +184,7 @@ const std::map<std::string, Place>& places() {
     p["objects.mesh"] = object("mesh", "chair.obj");
     p["objects.mesh.displacement"] = {
         "objects: {x: {mesh: chair.obj, displacement: {", {{"texture", "marble"}}, "}}}"};
+    p["objects.curves"] = object("curves", "fur.hair");
     p["objects.emit"] = {"objects: {x: {shape: sphere, emit: {", {}, "}}}"};
     p["objects.instance"] = object("instance", "tree");
     p["objects.group"] = {"objects: {x: {group: {", {}, "}}}"};
@@ -239,8 +240,8 @@ bool excludes(const JobKey& id, const std::string& other) {
   const bool of_density = id.section == "media.density";
   const std::vector<std::string> kinds =
       of_density ? std::vector<std::string>{"vdb", "noise", "shell"}
-                 : std::vector<std::string>{"shape", "mesh", "instance",  "group", "gltf",
-                                            "pbrt",  "obj",  "animation", "loop"};
+                 : std::vector<std::string>{"shape", "mesh", "curves", "instance",  "group",
+                                            "gltf",  "pbrt", "obj",    "animation", "loop"};
   const auto is_kind = [&](const std::string& k) {
     return std::find(kinds.begin(), kinds.end(), k) != kinds.end();
   };
@@ -297,8 +298,9 @@ Outcome outcome_of(const std::string& text) {
   MemoryAssets inner;
   inner.add("base.yaml", kBase);
   inner.add("sky.yaml", "environment: {color: 0.3}\n");
-  for (const char* file : {"knot.ply", "forest.ply", "chair.obj", "wood.png", "bricks.png",
-                           "sky.hdr", "smoke.vdb", "cloud.vdb", "aces/config.ocio", "view.ocio"}) {
+  for (const char* file :
+       {"knot.ply", "forest.ply", "fur.hair", "chair.obj", "wood.png", "bricks.png", "sky.hdr",
+        "smoke.vdb", "cloud.vdb", "aces/config.ocio", "view.ocio"}) {
     inner.add(file, std::string("content of ") + file);
   }
   add_scenes(inner);

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "core/materials/make_hair.h"
 #include "core/materials/make_layers.h"
 #include "core/materials/make_material.h"
 #include "core/materials/make_matt.h"
@@ -137,6 +138,22 @@ inline std::vector<BsdfCase> layered_cases() {
   };
 }
 
+/// Strands; they are not the same both ways.
+inline std::vector<BsdfCase> hair_cases() {
+  const auto hair = [](float roughness, float radial_roughness, const Rgb& absorption) {
+    HairParams params;
+    params.absorption = absorption;
+    params.roughness.value = roughness;
+    params.radial_roughness.value = radial_roughness;
+    return make_hair(params);
+  };
+  return {
+      {"hair", hair(0.3F, 0.3F, melanin_absorption(1.3F, 0.2F)), 1.0F, false},
+      {"hair_white", hair(0.5F, 0.7F, Rgb(0.0F)), 1.0F, false},
+      {"hair_wild", hair(1.0F, 1.0F, {0.1F, 0.5F, 2.0F}), 1.0F, false},
+  };
+}
+
 /// Materials that scatter smoothly, some with delta lobes beside.
 inline std::vector<BsdfCase> smooth_cases() {
   const MetalIndex gold = *find_metal("gold");
@@ -191,7 +208,7 @@ inline std::vector<BsdfCase> smooth_cases() {
       {"mix_nested",
        make_mix(make_mix(red, metal(0.5F), number(0.5F)), glossy(0.5F, 0.5F), number(0.25F))},
   };
-  for (const auto& more : {principled_cases(), layered_cases()})
+  for (const auto& more : {principled_cases(), layered_cases(), hair_cases()})
     cases.insert(cases.end(), more.begin(), more.end());
   return cases;
 }

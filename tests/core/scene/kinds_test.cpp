@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "core/geometry/read_hair.h"
 #include "core/job/parse.h"
 #include "core/scene/appearance.h"
 #include "core/scene/build_scene.h"
@@ -35,10 +36,17 @@ std::string one_pixel() {
   return std::string("#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 1 +X 1\n") + "\x80\x80\x80\x81";
 }
 
+/// A strand from the origin upwards.
+std::string two_points() {
+  const Bytes file = hair_bytes({{Vec3(0.0F), Vec3(0.0F, 1.0F, 0.0F)}, {0.1F, 0.1F}, {}, {2}});
+  return {file.chars(), file.size()};
+}
+
 Status builds(const std::string& text) {
   MemoryAssets assets;
   assets.add("triangle.ply", kTriangle);
   assets.add("pixel.hdr", one_pixel());
+  assets.add("fur.hair", two_points());
   Diagnostics diagnostics;
   const Job job = parse_job("hyades: 1\n" + text, "kinds.yaml", assets, diagnostics);
   if (!diagnostics.empty()) return Error{diagnostics.to_string()};
@@ -55,8 +63,9 @@ void expect_builds(const std::string& text) {
 
 TEST(Kinds, EveryNameOfAJobHasAMaker) {
   std::vector<std::string> shapes(kShapeNames.begin(), kShapeNames.end());
-  shapes.emplace_back("mesh");
+  shapes.insert(shapes.end(), {"mesh", "curves"});
   EXPECT_THAT(made_shapes(), UnorderedElementsAreArray(shapes));
+  EXPECT_THAT(made_curve_bases(), UnorderedElementsAreArray(kCurveBasisNames));
   EXPECT_THAT(made_color_spaces(), UnorderedElementsAreArray(textures::kColorSpaces));
   EXPECT_THAT(made_wraps(), UnorderedElementsAreArray(textures::kWraps));
   EXPECT_THAT(made_texture_filters(), UnorderedElementsAreArray(textures::kFilters));
@@ -100,7 +109,7 @@ TEST(Kinds, TheReferenceListsTheSameNames) {
               UnorderedElementsAreArray(documented("materials", "type")));
   EXPECT_THAT(KindsOf<LightKind>::names(), UnorderedElementsAreArray(documented("lights", "type")));
   std::vector<std::string> shapes = documented("objects", "shape");
-  shapes.emplace_back("mesh");
+  shapes.insert(shapes.end(), {"mesh", "curves"});
   EXPECT_THAT(made_shapes(), UnorderedElementsAreArray(shapes));
   EXPECT_THAT(made_color_spaces(),
               UnorderedElementsAreArray(documented("textures.image", "color_space")));
@@ -122,6 +131,7 @@ TEST(Kinds, TheReferenceListsTheSameNames) {
               UnorderedElementsAreArray(documented("textures.ramp", "between")));
   EXPECT_THAT(made_mesh_normals(),
               UnorderedElementsAreArray(documented("objects.mesh", "normals")));
+  EXPECT_THAT(made_curve_bases(), UnorderedElementsAreArray(documented("objects.curves", "basis")));
 }
 
 TEST(Kinds, ASceneIsBuiltOfEach) {
@@ -148,7 +158,8 @@ TEST(Kinds, ASceneIsBuiltOfEach) {
     if (type == "coat") more = ", base: a";
     if (type == "two-sided") more = ", front: a, back: a";
     expect_builds("materials: {a: {type: lambert}, m: {type: '" + type + "'" + more +
-                  "}}\nobjects: {o: {shape: sphere, material: m}}\n");
+                  "}}\nobjects: {o: {" + (type == "hair" ? "curves: fur.hair" : "shape: sphere") +
+                  ", material: m}}\n");
   }
   for (const std::string& type : KindsOf<LightKind>::names()) {
     const std::string more = type == "projector" ? ", image: pixel.hdr" : "";
@@ -158,6 +169,7 @@ TEST(Kinds, ASceneIsBuiltOfEach) {
     expect_builds("objects: {o: {shape: " + shape + "}}\n");
   }
   expect_builds("objects: {o: {mesh: triangle.ply}}\n");
+  expect_builds("objects: {o: {curves: fur.hair}}\n");
   for (const std::string& name : textures::kWraps) {
     expect_builds("textures: {x: {type: image, file: pixel.hdr, wrap: " + name +
                   "}}\nmaterials: {m: {type: lambert, color: x}}\n"
