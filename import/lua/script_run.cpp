@@ -13,11 +13,13 @@
 #include "core/base/hash.h"
 #include "core/base/printable.h"
 #include "core/base/text.h"
+#include "core/geometry/read_hair.h"
 #include "core/geometry/read_places.h"
 #include "import/lua/libraries.h"
 #include "import/lua/places.h"
 #include "import/lua/random.h"
 #include "import/lua/setting.h"
+#include "import/lua/strands.h"
 #include "import/lua/time_guard.h"
 #include "import/lua/tree.h"
 #include "import/within_folder.h"
@@ -137,11 +139,12 @@ class Run {
     void* const self = lua_touserdata(state, 1);
     open_libraries(state);
     lua_pushglobaltable(state);
-    constexpr std::array<luaL_Reg, 7> kCalls = {{{"param", param},
+    constexpr std::array<luaL_Reg, 8> kCalls = {{{"param", param},
                                                  {"frame", frame},
                                                  {"time", time},
                                                  {"include", include},
                                                  {"places", places},
+                                                 {"strands", strands},
                                                  {"random", make_random},
                                                  {nullptr, nullptr}}};
     lua_pushlightuserdata(state, self);
@@ -218,14 +221,22 @@ class Run {
 
   /// places(list): the name of a file with these copies, for an instance's `places`.
   static int places(lua_State* state) {
+    return make_file(state, places_bytes(read_copies(state, 1)), "places", ".ply");
+  }
+
+  /// strands(list): the name of a file with these strands, for an object's `curves`.
+  static int strands(lua_State* state) {
+    return make_file(state, hair_bytes(read_strands(state, 1)), "strands", ".hair");
+  }
+
+  static int make_file(lua_State* state, const Bytes& file, const char* kind, const char* ending) {
     Run& run = of(state);
-    const Bytes file = places_bytes(read_copies(state, 1));
     if (file.size() > run.request_.limits.memory - run.made_bytes_) {
-      return luaL_error(state, "more than %s of copies in all",
-                        format_bytes(run.request_.limits.memory).c_str());
+      return luaL_error(state, "more than %s of %s in all",
+                        format_bytes(run.request_.limits.memory).c_str(), kind);
     }
     const Sha256 hash = sha256({file.chars(), file.size()});
-    const std::string name = "places-" + to_hex(std::span(hash).first(8)) + ".ply";
+    const std::string name = fmt::format("{}-{}{}", kind, to_hex(std::span(hash).first(8)), ending);
     if (run.result_.made.emplace(name, file).second) run.made_bytes_ += file.size();
     const std::string reference = run.request_.made + name;
     lua_pushlstring(state, reference.data(), reference.size());

@@ -14,8 +14,9 @@
 namespace hyades::core::pbrt {
 namespace {
 
-constexpr uint32_t kPieces = 6;  ///< of each segment
-constexpr uint32_t kSides = 6;   ///< of a tube
+constexpr uint32_t kPieces = 6;              ///< of each segment
+constexpr uint32_t kSides = 6;               ///< of a tube
+constexpr size_t kMostStrandPoints = 65536;  ///< of the files of strands
 
 /// A curve as cubic Bezier segments.
 struct Curve {
@@ -115,7 +116,33 @@ void join_rows(TriangleMesh& mesh, uint32_t across) {
 Result<uint64_t> check_curve(const ShapeEntity& shape, Report& report) {
   auto curve = curve_of(shape, report);
   if (!curve) return curve.error();
+  if (is_strand(shape)) return curve->segments.size();
   return uint64_t{2} * kPieces * (curve->normals.empty() ? kSides : 1) * curve->segments.size();
+}
+
+bool is_strand(const ShapeEntity& shape) {
+  if (shape.type != "curve" || shape.area_light >= 0) return false;
+  return std::none_of(shape.parameters.begin(), shape.parameters.end(), [](const ParameterPtr& p) {
+    return p->name == "type" && !p->texts.empty() && p->texts[0] == "ribbon";
+  });
+}
+
+Status append_strand(const ShapeEntity& shape, Report& report, StrandList& strands) {
+  auto curve = curve_of(shape, report);
+  if (!curve) return curve.error();
+  const size_t count = 3 * curve->segments.size() + 1;
+  if (count > kMostStrandPoints) {
+    return shape.place.error("a curve has " + format_count(count) + " points, expected at most " +
+                             format_count(kMostStrandPoints));
+  }
+  strands.sizes.push_back(static_cast<uint32_t>(count));
+  for (size_t i = 0; i < count; ++i) {
+    const size_t s = std::min(i / 3, curve->segments.size() - 1);
+    const float share = static_cast<float>(i) / static_cast<float>(count - 1);
+    strands.points.push_back(curve->segments[s][i - 3 * s]);
+    strands.radii.push_back(0.5F * std::lerp(curve->first_width, curve->last_width, share));
+  }
+  return {};
 }
 
 Result<TriangleMesh> curve_mesh(const ShapeEntity& shape, Report& report) {

@@ -2,17 +2,24 @@
 
 #include <cstdint>
 
+#include "core/geometry/curve_set.h"
 #include "core/geometry/mesh.h"
 #include "import/pbrt/scene.h"
 
-/// Shapes that the job language has not, as triangles.
+/// Shapes that the job language has not, as triangles; and curves as strands.
 namespace hyades::core::pbrt {
 
-/// A "curve" as triangles: of type cylinder a tube of six sides, of type ribbon a band across its
-/// normals, of type flat, which would turn to whoever looks, a tube, too.
+/// Whether a shape is a "curve" that the job language has as strands: of type cylinder, or flat,
+/// which would turn to whoever looks. Ribbons, and what shines, are triangles.
+bool is_strand(const ShapeEntity& shape);
+
+/// Adds such a curve, in its own space, to `strands`: points of Bezier's.
+Status append_strand(const ShapeEntity& shape, Report& report, StrandList& strands);
+
+/// A "curve" as triangles: of type ribbon a band across its normals, else a tube of six sides.
 Result<TriangleMesh> curve_mesh(const ShapeEntity& shape, Report& report);
 
-/// Whether curve_mesh() can make it; the number of its triangles.
+/// Whether it can be made; the number of its triangles, or of a strand's pieces.
 Result<uint64_t> check_curve(const ShapeEntity& shape, Report& report);
 
 /// A "loopsubdiv": its triangles subdivided `levels` times (Loop 1987), brought to the limit

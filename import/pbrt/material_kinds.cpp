@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -20,12 +21,13 @@ constexpr float kSmoothAlpha = 1e-3F;
 }  // namespace
 
 MaterialKinds::MaterialKinds(Materials& materials, Context& context, Textures& textures,
-                             const Entity& entity, std::string wish)
+                             const Entity& entity, std::string wish, bool strands)
     : materials_(materials),
       context_(context),
       textures_(textures),
       entity_(entity),
       wish_(std::move(wish)),
+      strands_(strands),
       reader_(entity.parameters, entity.place, context.report) {}
 
 void MaterialKinds::note(const std::string& what) { context_.report.note(entity_.place, what); }
@@ -289,9 +291,39 @@ YamlPtr MaterialKinds::subsurface() {
 }
 
 YamlPtr MaterialKinds::hair() {
+  if (!strands_) return hair_on_surface();
+  YamlMap out{{"type", yaml_word("hair")}};
+  YamlPtr color = textures_.color_if(reader_, "reflectance");
+  if (color == nullptr) color = textures_.color_if(reader_, "color");
+  const float eumelanin = reader_.number("eumelanin", 0.0F);
+  const float pheomelanin = reader_.number("pheomelanin", 0.0F);
+  const Parameter* p = reader_.find("sigma_a");
+  if (p != nullptr && p->type == "texture") note("a texture of sigma_a is left out");
+  const auto absorption = p != nullptr && p->type != "texture"
+                              ? color_of(context_, *p, ColorUse::surface)
+                              : std::nullopt;
+  if (absorption) {
+    out.put("absorption", color_node(glm::max(*absorption, Rgb(0.0F))));
+  } else if (color != nullptr) {
+    out.put("color", color);
+  } else if (eumelanin > 0.0F || pheomelanin > 0.0F) {
+    out.put("eumelanin", yaml_number(std::max(eumelanin, 0.0F)))
+        .put("pheomelanin", yaml_number(std::max(pheomelanin, 0.0F)));
+  }
+  const std::pair<const char*, const char*> widths[] = {{"beta_m", "roughness"},
+                                                        {"beta_n", "radial_roughness"}};
+  for (const auto& [theirs, ours] : widths) {
+    if (const YamlPtr width = textures_.number_if(reader_, theirs)) out.put(ours, width);
+  }
+  out.put("ior", yaml_number(std::clamp(reader_.number("eta", 1.55F), 1.0F, 100.0F)));
+  out.put("tilt", yaml_number(std::clamp(reader_.number("alpha", 2.0F), -45.0F, 45.0F)));
+  return out.node();
+}
+
+YamlPtr MaterialKinds::hair_on_surface() {
   note(
-      "hair is a rough matt surface with a highlight: its fibres do not scatter light as hair "
-      "does");
+      "hair on what is no curve is a rough matt surface with a highlight: its fibres do not "
+      "scatter light as hair does");
   YamlPtr color = textures_.color_if(reader_, "reflectance");
   if (color == nullptr) color = textures_.color_if(reader_, "color");
   for (const char* name : {"eta", "beta_m", "beta_n", "alpha"}) reader_.find(name);

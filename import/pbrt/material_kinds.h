@@ -17,7 +17,7 @@ struct MadeMaterial {
 class MaterialKinds {
  public:
   MaterialKinds(Materials& materials, Context& context, Textures& textures, const Entity& entity,
-                std::string wish);
+                std::string wish, bool strands);
 
   MadeMaterial make(const std::string& type);
 
@@ -29,6 +29,7 @@ class MaterialKinds {
   YamlPtr diffuse();
   YamlPtr diffuse_transmission();
   YamlPtr hair();
+  YamlPtr hair_on_surface();
   YamlPtr interface();
   YamlPtr measured();
   YamlPtr mix();
@@ -57,6 +58,7 @@ class MaterialKinds {
   Textures& textures_;
   const Entity& entity_;
   std::string wish_;
+  bool strands_;  ///< what it is for
   ParameterReader reader_;
   std::string interior_;
   bool remap_ = true;

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "core/job/yaml_writer.h"
+#include "import/pbrt/made_meshes.h"
 #include "import/pbrt/material_kinds.h"
 
 namespace hyades::core::pbrt {
@@ -19,7 +20,8 @@ const WrittenMaterial& Materials::of(const ShapeEntity& shape) {
   static const WrittenMaterial none;
   if (shape.material_name.empty()) {
     const Entity& entity = context_.scene.materials[shape.material];
-    return written(entity, entity.type, entity.type.empty() ? "interface" : entity.type);
+    return written(entity, entity.type, entity.type.empty() ? "interface" : entity.type,
+                   is_strand(shape));
   }
   const auto found = named_.find(shape.material_name);
   if (found == named_.end()) {
@@ -27,12 +29,12 @@ const WrittenMaterial& Materials::of(const ShapeEntity& shape) {
     return none;
   }
   ParameterReader reader(found->second->parameters, found->second->place, context_.report);
-  return written(*found->second, reader.text("type"), shape.material_name);
+  return written(*found->second, reader.text("type"), shape.material_name, is_strand(shape));
 }
 
 const WrittenMaterial& Materials::written(const Entity& entity, const std::string& type,
-                                          const std::string& wish) {
-  const auto [known, is_new] = written_.emplace(&entity, WrittenMaterial());
+                                          const std::string& wish, bool strands) {
+  const auto [known, is_new] = written_.emplace(std::pair(&entity, strands), WrittenMaterial());
   WrittenMaterial& place = known->second;  // stays where it is while others are added
   if (!is_new) {
     if (making_.contains(&entity)) {
@@ -47,7 +49,7 @@ const WrittenMaterial& Materials::written(const Entity& entity, const std::strin
     return place;
   }
   making_.insert(&entity);
-  MadeMaterial made = MaterialKinds(*this, context_, textures_, entity, wish).make(type);
+  MadeMaterial made = MaterialKinds(*this, context_, textures_, entity, wish, strands).make(type);
   making_.erase(&entity);
   if (made.node == nullptr) return place;
   WrittenMaterial out;

@@ -2,8 +2,8 @@
 
 #include <map>
 #include <string>
-#include <unordered_map>
 #include <unordered_set>
+#include <utility>
 
 #include "import/pbrt/layer_walk.h"
 #include "import/pbrt/textures.h"
@@ -30,13 +30,14 @@ class Materials {
   std::string cut_out(const WrittenMaterial& material, const YamlPtr& opacity);
 
  private:
+  /// `strands`: it is for those.
   const WrittenMaterial& written(const Entity& entity, const std::string& type,
-                                 const std::string& wish);
+                                 const std::string& wish, bool strands);
 
   Context& context_;
   Textures& textures_;
   std::map<std::string, const NamedEntity*> named_;
-  std::unordered_map<const Entity*, WrittenMaterial> written_;
+  std::map<std::pair<const Entity*, bool>, WrittenMaterial> written_;
   std::unordered_set<const Entity*> making_;     ///< those that are made of each other
   std::map<std::string, std::string> same_;      ///< text -> name, of those without one
   std::map<std::string, std::string> cut_outs_;  ///< material and opacity -> name

@@ -13,8 +13,10 @@
 #include <utility>
 #include <vector>
 
+#include "core/geometry/read_hair.h"
 #include "core/geometry/read_mesh.h"
 #include "core/geometry/write_ply.h"
+#include "import/pbrt/made_meshes.h"
 #include "import/pbrt/meshes.h"
 
 namespace hyades::core::pbrt {
@@ -37,7 +39,7 @@ bool is_small(const ShapeEntity& shape) {
 bool are_alike(const ShapeEntity& a, const ShapeEntity& b) {
   return a.type == b.type && a.to_world.at[0] == b.to_world.at[0] && a.material == b.material &&
          a.material_name == b.material_name && a.reversed == b.reversed && a.inside == b.inside &&
-         a.outside == b.outside;
+         a.outside == b.outside && is_strand(a) == is_strand(b);
 }
 
 /// Adds the triangles of `part`; what only one of them has is filled up with zeros.
@@ -94,7 +96,19 @@ struct Run {
   const std::vector<ShapeEntity>* shapes = nullptr;
   size_t first = 0;
   size_t last = 0;
+  bool strands = false;  ///< a file of strands is meant
 };
+
+Result<Bytes> make_strands(const Run& run) {
+  Report report;
+  StrandList strands;
+  for (size_t i = run.first; i <= run.last; ++i) {
+    const ShapeEntity& shape = (*run.shapes)[i];
+    if (!is_strand(shape)) return shape.place.error("it is no curve");
+    if (Status s = append_strand(shape, report, strands); !s) return s.error();
+  }
+  return hair_bytes(strands);
+}
 
 std::optional<Run> run_of(const ParsedScene& scene, std::string_view name) {
   Run run;
@@ -115,7 +129,8 @@ std::optional<Run> run_of(const ParsedScene& scene, std::string_view name) {
     if (!last) return std::nullopt;
     run.last = *last;
   }
-  if (name != ".ply" || run.last < run.first || run.last >= run.shapes->size()) {
+  run.strands = name == ".hair";
+  if ((name != ".ply" && !run.strands) || run.last < run.first || run.last >= run.shapes->size()) {
     return std::nullopt;
   }
   return run;
@@ -141,6 +156,7 @@ std::string mesh_run_name(size_t first, size_t run) {
 Result<Bytes> make_mesh_file(const LoadedScene& loaded, const std::string& name) {
   const auto run = run_of(loaded.scene, name);
   if (!run) return Error{"the scene has no mesh '" + name + "'"};
+  if (run->strands) return make_strands(*run);
   const ShapeEntity& shape = (*run->shapes)[run->first];
   Report report;
   if (shape.type == "plymesh") {

@@ -15,7 +15,8 @@ size_t mesh_run(const std::vector<ShapeEntity>& shapes, size_t first);
 /// "12", or "12-to-40" for the run of 29 shapes that begins with number 12.
 std::string mesh_run_name(size_t first, size_t run);
 
-/// The mesh "meshes/NAME.ply" of a scene: shape-N, shape-N-to-M, object-O-N, object-O-N-to-M.
+/// The mesh "meshes/NAME.ply", or the strands "meshes/NAME.hair", of a scene: shape-N,
+/// shape-N-to-M, object-O-N, object-O-N-to-M.
 Result<Bytes> make_mesh_file(const LoadedScene& scene, const std::string& name);
 
 }  // namespace hyades::core::pbrt

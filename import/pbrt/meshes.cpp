@@ -165,7 +165,8 @@ Result<TriangleMesh> control_mesh(const ShapeEntity& shape, Report& report) {
 
 bool is_made_mesh(const ShapeEntity& shape) {
   return shape.type == "trianglemesh" || shape.type == "bilinearmesh" ||
-         shape.type == "loopsubdiv" || shape.type == "curve" || needs_tessellation(shape);
+         shape.type == "loopsubdiv" || (shape.type == "curve" && !is_strand(shape)) ||
+         needs_tessellation(shape);
 }
 
 Result<TriangleMesh> mesh_of(const ShapeEntity& shape, Report& report) {

@@ -10,6 +10,7 @@
 #include "core/base/text.h"
 #include "import/pbrt/instances.h"
 #include "import/pbrt/lights.h"
+#include "import/pbrt/made_meshes.h"
 #include "import/pbrt/mesh_files.h"
 #include "import/pbrt/meshes.h"
 #include "import/pbrt/motion.h"
@@ -55,13 +56,17 @@ YamlPtr Shapes::geometry(const ShapeEntity& shape, const std::string& file, bool
   ParameterReader reader = read(context_, shape);
   skip_known(reader);
   YamlMap out;
-  const std::string made = context_.request.made + "meshes/" + file + ".ply";
+  const bool strand = is_strand(shape);
+  const std::string made = context_.request.made + "meshes/" + file + (strand ? ".hair" : ".ply");
   const auto positive = [&](float value, const char* what) {
     if (value > 0.0F) return true;
     context_.report.error(shape.place, std::string(what) + " is not above 0");
     return false;
   };
-  if (is_made_mesh(shape)) {
+  if (strand) {
+    if (!can_be_made(shape)) return nullptr;
+    out.put("curves", yaml_text(made)).put("basis", yaml_word("bezier"));
+  } else if (is_made_mesh(shape)) {
     if (!can_be_made(shape)) return nullptr;
     if (reader.find("faceIndices") != nullptr) {
       context_.report.note(shape.place, "faceIndices are left out");
@@ -127,7 +132,7 @@ YamlPtr Shapes::geometry(const ShapeEntity& shape, const std::string& file, bool
         shape.place, "there is no shape '" + shape.type + "'" + did_you_mean(shape.type, names));
     return nullptr;
   }
-  if (!is_made_mesh(shape)) reader.note_unused();
+  if (!strand && !is_made_mesh(shape)) reader.note_unused();
   return out.node();
 }
 

@@ -246,7 +246,7 @@ TEST(LuaSandbox, WhatIsMadeBesideTheScriptCounts) {
               HasSubstr("the script takes more than 32.0 MiB of memory"));
   EXPECT_THAT(run("for k = 1, 100 do local t = {} for i = 1, 20000 do t[i] = {at = {k, i, 0}} end "
                   "places(t) end"),
-              HasSubstr("more than 32.0 MiB of copies in all"));
+              HasSubstr("more than 32.0 MiB of places in all"));
   EXPECT_THAT(run("local t = {} for i = 1, 500000 do t[i] = i end pairs(t)"),
               HasSubstr("the script takes more than 32.0 MiB of memory"));
 }

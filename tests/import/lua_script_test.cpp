@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include "core/geometry/read_hair.h"
 #include "core/geometry/read_places.h"
 #include "import/scene_source.h"
 #include "tests/import/lua_script.h"
@@ -279,6 +280,49 @@ TEST(LuaPlaces, CopiesAreAFile) {
   EXPECT_EQ(moved(1, {1, 0, 0, 1}), "-0.000 0.000 -2.000") << "as rotate_y turns";
   EXPECT_EQ(moved(2, {0, 1, 1, 1}), "0.000 -2.000 2.000");
   EXPECT_EQ(job_complaints("include: s.lua\n", files), "");
+}
+
+TEST(LuaStrands, AreAFile) {
+  MemoryAssets files;
+  files.add("s.lua",
+            "return {objects = {fur = {curves = strands{{points = {{0, 0, 0}, {0, 1, 0}, {0, 2, "
+            "0}}, width = {0.2, 0.1}, color = {1, 0.5, 0}}, {points = {{1, 0, 0}, {1, 1, 0}}, "
+            "width = 0.5, color = {0, 0, 1}}}}}}");
+  ImportingResolver importing(files);
+  const auto source = read_scene(importing.sources(), "s.lua");
+  SceneRequest request;
+  request.made = "s.lua.files/";
+  const auto told = (*source)->sections(request);
+  ASSERT_TRUE(told) << told.error().message;
+  importing.adopt("s.lua", *source);
+  const std::string name =
+      told->sections->find("objects")->value->map[0].value->find("curves")->value->scalar;
+  const auto strands = read_hair(importing, name, CurveBasis::catmull_rom, 0);
+  ASSERT_TRUE(strands) << strands.error().message;
+  ASSERT_EQ((*strands)->strand_count(), 2U);
+  EXPECT_NEAR((*strands)->piece(0).radius_at(1.0), 0.075, 1e-6);
+  EXPECT_NEAR((*strands)->piece(2).radius_at(0.5), 0.25, 1e-6);
+  EXPECT_EQ((*strands)->color_at(2, 0.5F), Vec3(0.0F, 0.0F, 1.0F));
+  EXPECT_EQ(job_complaints("include: s.lua\n", files), "");
+}
+
+TEST(LuaStrands, WrongOnesAreToldByNumber) {
+  const auto error = [](const std::string& list) {
+    return run_lua("return {v = strands{" + list + "}}").error;
+  };
+  const std::string good = "{points = {{0, 0, 0}, {0, 1, 0}}, width = 1}";
+  EXPECT_EQ(error(good), "");
+  EXPECT_THAT(error(good + ", {points = {{0, 0, 0}}, width = 1}"),
+              HasSubstr("strand 2 has 1 points, expected 2 to 65536"));
+  EXPECT_THAT(error("{points = {{0, 0, 0}, {0, 1}}, width = 1}"),
+              HasSubstr("points of strand 1 has a table of others, expected 3 numbers"));
+  EXPECT_THAT(error("{points = {{0, 0, 0}, {0, 1, 0}}}"),
+              HasSubstr("width of strand 1 has a nil, expected 2 numbers"));
+  EXPECT_THAT(error("{points = {{0, 0, 0}, {0, 1, 0}}, width = -1}"), HasSubstr("is below 0"));
+  EXPECT_THAT(error("{point = {}}"), HasSubstr("strand 1 has the key 'point', expected points,"));
+  EXPECT_THAT(error(good + ", {points = {{0, 0, 0}, {0, 1, 0}}, width = 1, color = {1, 1, 1}}"),
+              HasSubstr("strand 2 has a color, but those before have none"));
+  EXPECT_THAT(error(""), HasSubstr("a list without strands"));
 }
 
 TEST(LuaPlaces, TheTownTakesAHundredthOfTheSteps) {

@@ -1,5 +1,6 @@
 // The shapes of pbrt's scenes as meshes.
 
+#include "core/geometry/read_hair.h"
 #include "tests/import/pbrt_files.h"
 
 namespace hyades::test {
@@ -7,6 +8,7 @@ namespace {
 
 using core::Vec2;
 using core::Vec3;
+using ::testing::Contains;
 using ::testing::Each;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
@@ -101,8 +103,49 @@ TEST(PbrtShapes, LoopSubdivisionNearsItsLimit) {
   for (const Vec3& p : square->positions) EXPECT_EQ(p.z, 0.0F);
 }
 
-TEST(PbrtShapes, CurvesAreTubesAndRibbons) {
+/// The strands of a file that a job names.
+std::shared_ptr<const core::CurveSet> strands_in(const PbrtJob& job, const std::string& name) {
+  const auto bytes = job.source->made_file(name);
+  EXPECT_TRUE(bytes.ok()) << (bytes.ok() ? "" : bytes.error().message);
+  PbrtFiles files;
+  files.add("made.hair", std::string(bytes->chars(), bytes->size()));
+  auto strands = core::read_hair(files, "made.hair", core::CurveBasis::bezier, 0);
+  EXPECT_TRUE(strands.ok()) << (strands.ok() ? "" : strands.error().message);
+  return *strands;
+}
+
+// As points of Bezier's, whatever they were, with widths that change evenly along them.
+TEST(PbrtShapes, CurvesAreStrands) {
+  const PbrtJob job =
+      pbrt_job(pbrt_world("Material \"hair\" \"float eumelanin\" .3 \"float beta_n\" .4\n"
+                          "Shape \"curve\" \"float width0\" .2 \"float width1\" .1 "
+                          "\"point3 P\" [0 0 0 0 0 1 0 0 2 0 0 3]\n"
+                          "Shape \"curve\" \"string basis\" \"bspline\" \"float width\" .1 "
+                          "\"point3 P\" [0 0 0 0 0 1 0 0 2 0 0 3 0 0 4]\n"
+                          "Shape \"sphere\""));
+  EXPECT_EQ(job.error, "");
+  EXPECT_THAT(job.text, HasSubstr("curves: meshes/shape-0.hair"));
+  EXPECT_THAT(job.text, HasSubstr("basis: bezier"));
+  EXPECT_THAT(job.text, HasSubstr("type: hair, eumelanin: 0.3, pheomelanin: 0, radial_roughness: "
+                                  "0.4, ior: 1.55, tilt: 2"));
+  EXPECT_THAT(job.notes, Contains(HasSubstr("hair on what is no curve")));
+  const auto first = strands_in(job, "meshes/shape-0.hair");
+  ASSERT_EQ(first->pieces.size(), 1U);
+  const core::CurvePiece piece = first->piece(0);
+  for (const double u : {0.0, 0.25, 0.5, 1.0}) {
+    EXPECT_NEAR(piece.at(u).z, 3.0 * u, 1e-6);
+    EXPECT_NEAR(piece.radius_at(u), 0.1 - 0.05 * u, 1e-6);
+  }
+  // A cubic B-spline of points on a line keeps to the inner of them.
+  const auto spline = strands_in(job, "meshes/shape-1.hair");
+  ASSERT_EQ(spline->pieces.size(), 2U);
+  EXPECT_NEAR(spline->piece(0).at(0.0).z, 1.0, 1e-6);
+  EXPECT_NEAR(spline->piece(1).at(1.0).z, 3.0, 1e-6);
+}
+
+TEST(PbrtShapes, CurvesThatShineAreTubesAndRibbonsBands) {
   const auto tube = mesh_in(
+      "AreaLightSource \"diffuse\"\n"
       "Shape \"curve\" \"string type\" \"cylinder\" \"float width\" .2 "
       "\"point3 P\" [0 0 0 0 0 1 0 0 2 0 0 3]");
   for (size_t i = 0; i < tube->positions.size(); ++i) {
@@ -115,12 +158,6 @@ TEST(PbrtShapes, CurvesAreTubesAndRibbons) {
       "\"float width0\" 1 \"float width1\" 3 "
       "\"point3 P\" [0 0 0 0 0 1 0 0 2 0 0 3]");
   EXPECT_NEAR(area(*ribbon), 6.0, 1e-4);
-  // A cubic B-spline of points on a line keeps to the inner of them.
-  const auto spline = mesh_in(
-      "Shape \"curve\" \"string basis\" \"bspline\" \"point3 P\" "
-      "[0 0 0 0 0 1 0 0 2 0 0 3 0 0 4] \"float width\" .1");
-  EXPECT_NEAR(spline->bounds.lower.z, 1.0F, 1e-6F);
-  EXPECT_NEAR(spline->bounds.upper.z, 3.0F, 1e-6F);
   EXPECT_THAT(pbrt_job(pbrt_world("Shape \"curve\" \"string type\" \"ribbon\" \"point3 P\" "
                                   "[0 0 0 0 0 1 0 0 2 0 0 3]"))
                   .error,
@@ -139,10 +176,24 @@ TEST(PbrtShapes, AlphaIsOpacity) {
   EXPECT_THAT(job.text, Not(HasSubstr("cutout-3")));
 }
 
-TEST(PbrtShapes, ManySmallOnesBecomeOneMesh) {
+TEST(PbrtShapes, ManyCurvesBecomeOneFile) {
   std::string world;
   for (int i = 0; i < 300; ++i) {
     world += "Shape \"curve\" \"float width\" .1 \"point3 P\" [0 0 0 0 0 1 0 0 2 0 0 " +
+             std::to_string(i + 3) + "]\n";
+  }
+  const PbrtJob job = pbrt_job(pbrt_world(world));
+  EXPECT_THAT(job.text, HasSubstr("meshes/shape-0-to-299.hair"));
+  const auto all = strands_in(job, "meshes/shape-0-to-299.hair");
+  ASSERT_EQ(all->strand_count(), 300U);
+  EXPECT_NEAR(all->piece(299).at(1.0).z, 302.0, 1e-4);
+  EXPECT_FALSE(job.source->made_file("meshes/shape-0-to-300.hair").ok());
+}
+
+TEST(PbrtShapes, ManySmallOnesBecomeOneMesh) {
+  std::string world;
+  for (int i = 0; i < 300; ++i) {
+    world += "Shape \"trianglemesh\" \"integer indices\" [0 1 2] \"point3 P\" [0 0 0 0 0 1 0 1 " +
              std::to_string(i + 3) + "]\n";
     if (i == 199) world += "Material \"conductor\"\n";
   }
