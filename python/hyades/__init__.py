@@ -23,7 +23,7 @@ from .job_types import cameras, integrators, lights, materials, media, objects, 
 from .job_types.lights import Environment, Sky
 from .job_types.settings import ColorManagement, Film, Filter, Frames, Sampling
 from .job_types.transforms import Rotation, Step
-from .mesh import MeshData, Places
+from .mesh import MeshData, Places, Strands
 from .picture import Picture
 from .program import check, find_program
 from .render import Progress, Rendering, render
@@ -34,7 +34,7 @@ __all__ = [
     "ColorManagement", "Complaint", "Environment", "Farm", "FarmError", "FileRefused", "Film",
     "Filter", "Frames", "HyadesError", "Job", "JobError", "KeyRefused", "Keys", "Layers",
     "MeshData", "Picture", "Places", "ProgramError", "Progress", "Rendering", "Rotation",
-    "Sampling", "Sky", "Step", "cameras", "check", "find_program", "integrators", "lights",
+    "Sampling", "Sky", "Step", "Strands", "cameras", "check", "find_program", "integrators", "lights",
     "materials", "media", "objects", "outputs", "read_exr", "render", "settings", "textures",
     "transforms", "write_exr",
 ]

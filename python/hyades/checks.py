@@ -209,7 +209,7 @@ def file(key: Key, value: Any) -> Any:
     is_array = hasattr(value, "dtype") and hasattr(value, "ndim")
     if isinstance(value, (str, os.PathLike)) or is_array or hasattr(value, "encode"):
         return value
-    raise refuse("a path, an array of numpy, a MeshData, Places or Picture")
+    raise refuse("a path, an array of numpy, a MeshData, Places, Strands or Picture")
 
 
 def mesh_file(key: Key, value: Any) -> Any:

@@ -1,7 +1,8 @@
-"""Meshes and places of copies out of arrays, as the PLY files that jobs read (docs/job.md, Mesh)."""
+"""Meshes, places of copies and strands out of arrays, as the PLY and HAIR files that jobs read (docs/job.md)."""
 
 from __future__ import annotations
 
+import struct
 from collections.abc import Sequence
 from typing import Any
 
@@ -89,6 +90,51 @@ class Places:
             (self.rotations, ("qx", "qy", "qz", "qw")),
         ]
         return _ply(given, ""), ".ply"
+
+
+class Strands:
+    """Hair, fur or grass: for `curves` of hyades.objects.Curves.
+
+    points (n, m, 3) of n strands of m points each, or a list of arrays (m, 3) of any lengths. widths,
+    the diameters: a number for all, a pair of them at the roots and the tips, or an array (n, m) or a list
+    of such as points are. Where given, colors (n, 3), linear, one for each strand.
+    """
+
+    def __init__(self, points: Any, widths: Any, *, colors: Array = None) -> None:
+        self.points = [_columns("points", strand, None, (3,)) for strand in points]
+        if not self.points:
+            raise ValueError("points has no strands, expected one at least")
+        for strand in self.points:
+            if not 2 <= len(strand) <= 65536:
+                raise ValueError(f"a strand has {len(strand)} points, expected 2 to 65536")
+        self.widths = [self._widths(widths, i) for i in range(len(self.points))]
+        self.colors = _columns("colors", colors, len(self.points), (3,))
+
+    def _widths(self, widths: Any, index: int) -> Any:
+        count = len(self.points[index])
+        if numpy.ndim(widths) == 0:
+            given = numpy.full(count, widths, "<f4")
+        elif isinstance(widths, (tuple, list)) and len(widths) == 2 and numpy.ndim(widths[0]) == 0:
+            given = numpy.linspace(widths[0], widths[1], count, dtype="<f4")
+        else:
+            given = numpy.asarray(widths[index], "<f4")
+        if given.shape != (count,) or not (numpy.isfinite(given) & (given >= 0)).all():
+            raise ValueError(f"the widths of strand {index} are not {count} finite numbers from 0 on")
+        return given
+
+    def encode(self) -> tuple[bytes, str]:
+        """The bytes of a HAIR file."""
+        sizes = [len(strand) for strand in self.points]
+        arrays = 1 | 2 | 4 | (0 if self.colors is None else 16)
+        head = struct.pack("<4s4I5f88x", b"HAIR", len(sizes), sum(sizes), arrays, 0, 1, 0, 1, 1, 1)
+        parts = [
+            numpy.asarray([size - 1 for size in sizes], "<u2"),
+            numpy.concatenate(self.points),
+            numpy.concatenate(self.widths),
+        ]
+        if self.colors is not None:
+            parts.append(numpy.repeat(self.colors, sizes, axis=0))
+        return head + b"".join(part.tobytes() for part in parts), ".hair"
 
 
 def _columns(name: str, values: Array, count: int | None, widths: Sequence[int]) -> Any:

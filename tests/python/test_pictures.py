@@ -114,6 +114,11 @@ class Meshes(unittest.TestCase):
             lambda: hyades.MeshData(corner, [[0, 1, 2]], uvs=[[0, 0]]),
             lambda: hyades.MeshData([[0, 0, float("nan")]], [[0, 0, 0]]),
             lambda: hyades.Places(corner, rotations=[[0, 0, 0]]),
+            lambda: hyades.Strands([], 0.1),
+            lambda: hyades.Strands([corner[:1]], 0.1),
+            lambda: hyades.Strands([corner], -0.1),
+            lambda: hyades.Strands([corner], [[0.1, 0.1]]),
+            lambda: hyades.Strands([corner], 0.1, colors=corner),
         ):
             self.assertRaises(ValueError, wrong)
 

@@ -57,6 +57,22 @@ class Render(unittest.TestCase):
         self.assertGreater(layers["alpha"][:, 12:].sum(), 2 * layers["alpha"][:, :12].sum())
         self.assertTrue(numpy.isinf(layers["depth"][0, 0]))
 
+    def test_strands_have_widths_and_colors(self) -> None:
+        job = small(name="strands", integrator=hyades.integrators.Path(max_depth=1))
+        job.environment = hyades.Environment(color=1)
+        upright = [[[x, -2, 0], [x, 0, 0], [x, 2, 0]] for x in (-1, 1)]
+        strands = hyades.Strands(upright, (0.5, 0.5), colors=[[1, 0, 0], [0, 0, 1]])
+        color = hyades.textures.VertexColor()
+        job.objects["s"] = objects.Curves(curves=strands, material=materials.Lambert(color=color))
+        job.outputs = [outputs.Exr(file="strands.exr", layers=["albedo", "alpha"])]
+        layers = hyades.render(job, self.folder).layers()
+        # Two upright bands, 0.5 wide each: a red one on the left, a blue one on the right.
+        row = layers["albedo"][8]
+        self.assertGreater(row[:12, 0].sum(), 10 * row[:12, 2].sum())
+        self.assertGreater(row[12:, 2].sum(), 10 * row[12:, 0].sum())
+        lists = hyades.Strands([numpy.array(p, "f4") for p in upright], [[0.5] * 3] * 2, colors=strands.colors)
+        self.assertEqual(lists.encode(), strands.encode())
+
     def test_frames_progress_and_what_was_written(self) -> None:
         job = small(name="moves", frames="1-3", keep_films=True)
         mesh = {f: hyades.MeshData([[f, 0, 0], [f + 1, 0, 0], [f, 1, 0]], [[0, 1, 2]]) for f in (1, 2, 3)}
