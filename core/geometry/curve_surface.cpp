@@ -62,35 +62,27 @@ float turn_around(const Vec3d& outward, const Vec3d& tangent) {
 }  // namespace
 
 std::optional<Hit> PlacedObject::meet_piece(const Ray& ray, uint32_t primitive,
-                                            const CopyPose* copy) const {
+                                            const CopyPose* copy, SurfacePoint* point) const {
   const LocalRay local(*this, ray, copy);
-  const auto met = meet_curve(placement_.shape.curves->piece(primitive), local.origin,
-                              local.direction, 0.0, static_cast<double>(ray.t_max));
+  const CurveSet& curves = *placement_.shape.curves;
+  const CurvePiece piece = curves.piece(primitive);
+  const auto met =
+      meet_curve(piece, local.origin, local.direction, 0.0, static_cast<double>(ray.t_max));
   if (!met) return std::nullopt;
   Hit hit;
   hit.primitive = primitive;
   hit.t = std::max(static_cast<float>(met->t), std::numeric_limits<float>::min());
   hit.u = static_cast<float>(met->u);
-  return hit;
-}
+  if (point == nullptr) return hit;
 
-SurfacePoint PlacedObject::piece_point(const Ray& ray, const Hit& hit, const CopyPose* copy) const {
-  const LocalRay local(*this, ray, copy);
-  const CurveSet& curves = *placement_.shape.curves;
-  const CurvePiece piece = curves.piece(hit.primitive);
-  // hit.t and hit.u were rounded to float: the exact ones are found again.
-  const CurveHit met =
-      meet_curve(piece, local.origin, local.direction, 0.0, static_cast<double>(ray.t_max))
-          .value_or(CurveHit{static_cast<double>(hit.t), static_cast<double>(hit.u)});
-  const CurvePoint at = curve_point(piece, met.u, local.origin + local.direction * met.t);
-
+  const CurvePoint at = curve_point(piece, met->u, local.origin + local.direction * met->t);
   SurfacePoint p;
+  p.t = hit.t;
   p.time = ray.time;
-  p.primitive = hit.primitive;
+  p.primitive = primitive;
   p.curves = &curves;
-  p.barycentrics = {static_cast<float>(met.u), 0.0F};
-  p.uv = {curves.along_strand(hit.primitive, p.barycentrics.x),
-          turn_around(at.outward, at.tangent)};
+  p.barycentrics = {hit.u, 0.0F};
+  p.uv = {curves.along_strand(primitive, hit.u), turn_around(at.outward, at.tangent)};
   p.world_to_object = local.to_object.to_mat4();
   const Vec3d position = local.to_world.point(at.position);
   const Vec3d ng =
@@ -99,9 +91,8 @@ SurfacePoint PlacedObject::piece_point(const Ray& ray, const Hit& hit, const Cop
   p.ng = Vec3(ng);
   p.ns = p.ng;
   const Vec3d along = unit_or(local.to_world.vector(at.tangent), Vec3d(1.0, 0.0, 0.0));
-  const Vec3d across = glm::cross(ng, along);
   p.dpdu = Vec3(along - ng * glm::dot(ng, along));
-  p.dpdv = Vec3(across);
+  p.dpdv = Vec3(glm::cross(ng, along));
   const double stretch = stretch_of(local.to_world);
   const Vec3d size = glm::abs(position);
   const Vec3d chord = piece.at(1.0) - piece.at(0.0);
@@ -110,7 +101,8 @@ SurfacePoint PlacedObject::piece_point(const Ray& ray, const Hit& hit, const Cop
       static_cast<float>(kTubeError * radius + kPlaceError * std::max({size.x, size.y, size.z}) +
                          kLengthError * stretch * std::sqrt(glm::dot(chord, chord)));
   p.thickness = static_cast<float>(2.0 * radius);
-  return p;
+  *point = p;
+  return hit;
 }
 
 }  // namespace hyades::core

@@ -46,6 +46,11 @@ class TubeEquations {
     return is_root(start) ? std::optional(start) : std::nullopt;
   }
 
+  /// Whether the line goes into the tube at a root.
+  bool comes_in(const CurveHit& root) const {
+    return glm::dot(origin_ + root.t * direction_ - piece_.at(root.u), direction_) < 0.0;
+  }
+
  private:
   bool is_root(const CurveHit& at) const {
     constexpr double kSlack = 1e-9;
@@ -131,13 +136,13 @@ std::optional<CurveHit> meet_curve(const CurvePiece& piece, const Vec3d& origin,
     const auto u = near_part(piece, origin, direction, u0, u0 + 1.0 / kParts);
     if (!u) continue;
     const Crossing crossing = cross_tangent(piece, origin, direction, *u);
-    for (const CurveHit& start : {crossing.enter, crossing.leave}) {
-      const auto root = equations.solve(start);
-      take(root);
-      // Where the piece bends, that may be where the line leaves: where it enters is better known
-      // from there.
-      if (root) take(equations.solve(cross_tangent(piece, origin, direction, root->u).enter));
-    }
+    const auto enters = equations.solve(crossing.enter);
+    take(enters);
+    if (enters && enters->t > t_min && equations.comes_in(*enters)) continue;
+    const auto leaves = equations.solve(crossing.leave);
+    take(leaves);
+    // Where the piece bends, where the line enters is known better from where it leaves.
+    if (leaves) take(equations.solve(cross_tangent(piece, origin, direction, leaves->u).enter));
   }
   if (best) best->u = std::clamp(best->u, 0.0, 1.0);
   return best;

@@ -80,16 +80,22 @@ Vec3 shading_normal(const Vec3d& n, const Vec3& ng) {
 }  // namespace
 
 SurfacePoint PlacedObject::point(const Ray& ray, const Hit& hit, const CopyPose* copy) const {
-  SurfacePoint p = is_quadric()  ? quadric_surface(ray, hit, copy)
-                   : is_curves() ? piece_point(ray, hit, copy)
-                                 : mesh_point(hit.primitive, hit.u, hit.v, ray.time, copy);
+  SurfacePoint p;
+  if (is_curves()) {
+    // Of a hit: it is met again, in the same place.
+    (void)meet_piece(ray, hit.primitive, copy, &p);
+    return p;
+  }
+  p = is_quadric() ? quadric_surface(ray, hit, copy)
+                   : mesh_point(hit.primitive, hit.u, hit.v, ray.time, copy);
   p.t = hit.t;
   return p;
 }
 
 bool PlacedObject::meet(const Ray& ray, uint32_t primitive, SurfacePoint& point,
                         const CopyPose* copy) const {
-  if (buffers_ == nullptr) {
+  if (is_curves()) return meet_piece(ray, primitive, copy, &point).has_value();
+  if (is_quadric()) {
     const auto hit = meet(ray, primitive, copy);
     if (hit) point = this->point(ray, *hit, copy);
     return hit.has_value();

@@ -101,7 +101,7 @@ PlacedObject::PlacedObject(Placement placement, std::shared_ptr<const MeshBuffer
 
 std::optional<Hit> PlacedObject::meet(const Ray& ray, uint32_t primitive,
                                       const CopyPose* copy) const {
-  if (is_curves()) return meet_piece(ray, primitive, copy);
+  if (is_curves()) return meet_piece(ray, primitive, copy, nullptr);
   if (!is_quadric()) {
     return meet_triangle_of(ray, primitive, triangle_at(primitive, ray.time), copy);
   }

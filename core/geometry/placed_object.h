@@ -80,8 +80,9 @@ class PlacedObject {
                        const CopyPose* copy) const;
   Vec3d mesh_normal(const std::array<uint32_t, 3>& vertices, double u, double v, float time) const;
   Vec3d mesh_tangent(uint32_t primitive, double u, double v, float time) const;
-  std::optional<Hit> meet_piece(const Ray& ray, uint32_t primitive, const CopyPose* copy) const;
-  SurfacePoint piece_point(const Ray& ray, const Hit& hit, const CopyPose* copy) const;
+  /// Of strands. `point`, unless null, gets the place.
+  std::optional<Hit> meet_piece(const Ray& ray, uint32_t primitive, const CopyPose* copy,
+                                SurfacePoint* point) const;
   SurfacePoint quadric_surface(const Ray& ray, const Hit& hit, const CopyPose* copy) const;
   SurfacePoint quadric_place(const Vec3d& near, float time, const Affine& to_world,
                              const Affine& to_object) const;

@@ -248,9 +248,9 @@ class HairBsdf final : public Bsdf {
 class Hair final : public Material {
  public:
   explicit Hair(HairParams params) : params_(std::move(params)) {
-    // Scales turn what is mirrored by twice their tilt one way, what goes through by it and what is
-    // mirrored within by four times it the other way.
-    constexpr std::array<float, 3> kTurns{-2.0F, 1.0F, 4.0F};
+    // Scales lean away from the tip: what is mirrored is turned by twice their tilt towards the
+    // root, what goes through by it and what is mirrored within by four times it the other way.
+    constexpr std::array<float, 3> kTurns{2.0F, -1.0F, -4.0F};
     for (size_t p = 0; p < kTurns.size(); ++p) {
       const SinCos turn = sin_cos(kTurns[p] * params_.tilt * (kPi / 180.0F));
       scales_.turn[p] = {turn.sin, turn.cos};

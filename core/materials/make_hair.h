@@ -15,7 +15,7 @@ struct HairParams {
   ScalarParam roughness{0.3F, {}};  ///< along the strand, 0..1
   ScalarParam radial_roughness{0.3F, {}};  ///< around it, 0..1
   float ior = 1.55F;                       ///< above 1
-  float tilt = 2.0F;  ///< of the scales against the strand, towards its root [degrees]
+  float tilt = 2.0F;  ///< of the scales' surfaces, whose normals lean to the root [degrees]
 };
 
 /// Hair and fur: Chiang, Bitterli, Tappan and Burley 2016, "A Practical and Controllable Hair and

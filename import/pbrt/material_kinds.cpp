@@ -316,7 +316,8 @@ YamlPtr MaterialKinds::hair() {
     if (const YamlPtr width = textures_.number_if(reader_, theirs)) out.put(ours, width);
   }
   out.put("ior", yaml_number(std::clamp(reader_.number("eta", 1.55F), 1.0F, 100.0F)));
-  out.put("tilt", yaml_number(std::clamp(reader_.number("alpha", 2.0F), -45.0F, 45.0F)));
+  // pbrt turns them the other way.
+  out.put("tilt", yaml_number(std::clamp(-reader_.number("alpha", 2.0F), -45.0F, 45.0F)));
   return out.node();
 }
 

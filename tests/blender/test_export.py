@@ -379,14 +379,48 @@ class NotThere(ExportTest):
         self.scene.hyades.max_depth = 256
         self.assertEqual(self.export()[1], "")
 
-    def test_hair_is_told(self) -> None:
+    def test_hair_becomes_strands(self) -> None:
         cube = bpy.data.objects["Cube"]
         cube.modifiers.new("Fur", "PARTICLE_SYSTEM")
         cube.particle_systems[0].name = "Fur"
         cube.particle_systems[0].settings.type = "HAIR"
-        self.assertIn("object 'Cube': the hair of 'Fur' is not supported yet", self.export()[1])
+        settings = cube.particle_systems[0].settings
+        settings.count, settings.render_step, settings.radius_scale = 7, 2, 0.1
+        cube.location = (1, 2, 3)
+        job, told = self.export()
+        self.assertEqual(told, "")
+        fur = job.objects["Cube.Fur"]
+        self.assertEqual([len(strand) for strand in fur.curves.points], [5] * 7)
+        roots = [strand[0] for strand in fur.curves.points]
+        # In the cube's own space, so that it takes its hair along.
+        self.assertTrue(all(abs(max(abs(root)) - 1) < 1e-5 for root in roots))
+        self.assertAlmostEqual(float(fur.curves.widths[0][0]), 0.1, places=6)
+        self.assertIsInstance(fur.material, hyades.materials.Principled)
         cube.modifiers[0].show_render = False
-        self.assertEqual(self.export()[1], "")
+        job, told = self.export()
+        self.assertEqual(told, "")
+        self.assertNotIn("Cube.Fur", job.objects)
+
+    def test_the_shader_of_hair_is_for_hair(self) -> None:
+        made, node = self.material("Mane")
+        tree = made.node_tree
+        hair = tree.nodes.new("ShaderNodeBsdfHairPrincipled")
+        tree.links.new(hair.outputs[0], next(n for n in tree.nodes if n.type == "OUTPUT_MATERIAL").inputs["Surface"])
+        if hasattr(hair, "model"):
+            hair.model = "CHIANG"
+        hair.parametrization = "COLOR"
+        hair.inputs["Coat"].default_value = 0.5
+        cube = bpy.data.objects["Cube"]
+        cube.data.materials[0] = made
+        self.assertIn("material 'Mane' > node 'Principled Hair BSDF': it is for hair; matt grey is used", self.export()[1])
+        cube.modifiers.new("Fur", "PARTICLE_SYSTEM")
+        cube.particle_systems[0].settings.type = "HAIR"
+        cube.show_instancer_for_render = False
+        job, told = self.export()
+        self.assertIn("Coat is left out", told)
+        self.assertNotIn("matt grey", told)
+        (fur,) = (one for one in job.objects.values() if isinstance(one, hyades.objects.Curves))
+        self.assertIsInstance(fur.material, hyades.materials.Hair)
 
 
 class Preferences(AddOnTest):

@@ -127,7 +127,7 @@ TEST(PbrtShapes, CurvesAreStrands) {
   EXPECT_THAT(job.text, HasSubstr("curves: meshes/shape-0.hair"));
   EXPECT_THAT(job.text, HasSubstr("basis: bezier"));
   EXPECT_THAT(job.text, HasSubstr("type: hair, eumelanin: 0.3, pheomelanin: 0, radial_roughness: "
-                                  "0.4, ior: 1.55, tilt: 2"));
+                                  "0.4, ior: 1.55, tilt: -2"));
   EXPECT_THAT(job.notes, Contains(HasSubstr("hair on what is no curve")));
   const auto first = strands_in(job, "meshes/shape-0.hair");
   ASSERT_EQ(first->pieces.size(), 1U);

@@ -8,7 +8,7 @@ from typing import Any, Optional
 from hyades import materials, media
 
 from .context import Context
-from .nodes import bsdfs, native, principled  # noqa: F401  (they register)
+from .nodes import bsdfs, hair, native, principled  # noqa: F401  (they register)
 from .nodes import graph, values
 from .nodes.closures import closure_of, with_opacity
 from .nodes.displacement import Displacement, add_bump, displacement_of
@@ -51,6 +51,29 @@ def material_of(context: Context, part: PartOfSurface, data: Any) -> Made:
     if not translator.is_of_surface:
         context.materials[name] = made
     return made
+
+
+def strand_material(context: Context, data: Any) -> materials.Material:
+    """Translates a material for hair: where it looks at places of a surface, its means count."""
+    key = ("strands", data.name_full if data is not None else "")
+    if key not in context.materials:
+        name = f"{data.name} hair" if data is not None else "default hair"
+        made = materials.Hair() if data is None else _of_strands(context, data)
+        context.add_material(name, made)
+        context.materials[key] = made
+    return context.materials[key]
+
+
+def _of_strands(context: Context, data: Any) -> materials.Material:
+    translator = Translator(context, f"material '{data.name}'")
+    translator.material = data
+    translator.is_of_strands = True
+    made = _translated(translator, data)
+    if not values.is_constant(made.emission, 0):
+        context.complain(translator.where, "hair does not shine: its emission is left out")
+    if made.interior is not None:
+        context.complain(translator.where, "hair has no inside: its volume is left out")
+    return made.material
 
 
 def _translated(translator: Translator, data: Any) -> Made:

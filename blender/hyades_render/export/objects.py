@@ -12,6 +12,7 @@ from hyades import objects
 
 from . import axes
 from .context import Context, free_name
+from .hair import add_curves, add_hair, has_hair
 from .lights import PlacedLight, add_light
 from .materials import Made, material_of
 from .meshes import Surface, part
@@ -83,7 +84,8 @@ def add_objects(context: Context) -> None:
                     known.ids.append(_id(instance))
             if known is not None:
                 continue
-        _tell_of_particles(context, object)
+        if instance.show_particles and has_hair(object):
+            _add_hair_of(context, instance, object, flags.is_indirect(instance))
         if instance.show_self:
             _add(context, copies, instance, object, flags.is_indirect(instance))
     for one in copies.values():
@@ -106,19 +108,19 @@ def _add(context: Context, copies: dict[Any, _Copies], instance: Any, object: An
             _add_piece(context, object.name, piece, axes.steps_to_world(matrix), seen)
     elif kind == "LIGHT":
         add_light(context, PlacedLight(object.name, object, axes.placed(matrix)))
+    elif kind == "CURVES":
+        add_curves(context, object, matrix, is_seen(context, object) and not is_indirect)
     elif kind == "VOLUME":
         add_volume(context, object, axes.array(matrix))
     elif kind not in _WITHOUT:
         context.complain(f"object '{object.name}'", f"objects of type {kind.lower()} are not supported yet")
 
 
-def _tell_of_particles(context: Context, object: Any) -> None:
-    """Of an object's particles those that are shown as other things come as copies; hair does not come at all."""
-    for system in object.particle_systems:
-        settings = system.settings
-        modifier = next((one for one in object.modifiers if getattr(one, "particle_system", None) == system), None)
-        if settings.type == "HAIR" and settings.render_type == "PATH" and (modifier is None or modifier.show_render):
-            context.complain(f"object '{object.name}'", f"the hair of '{system.name}' is not supported yet; it is left out")
+def _add_hair_of(context: Context, instance: Any, object: Any, is_indirect: bool) -> None:
+    if instance.is_instance:
+        context.complain(f"object '{object.name}'", "the hair of copies is left out")
+        return
+    add_hair(context, object, instance.matrix_world, is_seen(context, object) and not is_indirect)
 
 
 def _tell_of_blur(context: Context, object: Any) -> None:

@@ -91,6 +91,26 @@ TEST(Hair, NarrowLobesGoWhereRaysOfARodGo) {
   }
 }
 
+// Scales whose ends towards the tip (+x) stand off mirror light that comes from beside the strand
+// towards the root.
+TEST(Hair, TiltedScalesMirrorTowardsTheRoot) {
+  HairParams params;
+  params.absorption = Rgb(50.0F);  // nothing but what is mirrored
+  params.roughness.value = 0.1F;
+  params.tilt = 5.0F;
+  const BsdfUnderTest bsdf(make_hair(params));
+  const auto density = [&](float degrees) {
+    const float angle = degrees * kPi / 180.0F;
+    return bsdf
+        ->evaluate({0.0F, 0.0F, 1.0F}, {std::sin(angle), 0.0F, std::cos(angle)},
+                   TransportMode::radiance)
+        .x;
+  };
+  EXPECT_GT(density(-10.0F), 1.5F * density(-16.0F));
+  EXPECT_GT(density(-10.0F), 1.5F * density(-4.0F));
+  EXPECT_GT(density(-10.0F), 3.0F * density(10.0F));
+}
+
 // Half of a strand's width sees as much as the other: averaged over where a ray meets it, the model
 // is the same both ways around the strand, but for what the scales turn.
 TEST(Hair, IsReciprocalAcrossItsWidth) {

@@ -39,13 +39,14 @@ class Translator:
 
     `surface`: the mesh that it lies on, for baking (surface.py); None: there is none. Afterwards `uv_map` and
     `color_attribute` say what the job's textures look at ("" is the active one), and `is_of_surface` whether the
-    result holds for this surface alone.
+    result holds for this surface alone. `is_of_strands`: it is made for hair.
     """
 
     def __init__(self, context: Context, where: str, surface: Any = None) -> None:
         self.context = context
         self.where = where
         self.surface = surface
+        self.is_of_strands = False
         self.uv_map: Optional[str] = None
         self.color_attribute: Optional[str] = None
         self.is_of_surface = False
