@@ -45,39 +45,63 @@ std::optional<Place> read_place(const std::string& text) {
   return place.family == AF_UNSPEC ? std::nullopt : std::optional(place);
 }
 
-/// Who holds the end at `peer` of the connection from there to `own`; nothing where the kernel
-/// knows none, or cannot tell.
-std::optional<uid_t> ask_kernel(const Place& peer, const Place& own) {
-  struct {
-    nlmsghdr head{};
-    inet_diag_req_v2 wanted{};
-  } question;
+/// What the kernel is asked about sockets of TCP (sock_diag(7)), and what it answers.
+struct Question {
+  nlmsghdr head{};
+  inet_diag_req_v2 wanted{};
+};
+struct Told {
+  nlmsghdr head{};
+  inet_diag_msg found{};
+  std::array<std::byte, 512> more{};
+};
+
+Question question_about(int family) {
+  Question question;
   question.head.nlmsg_len = sizeof question;
   question.head.nlmsg_type = SOCK_DIAG_BY_FAMILY;
   question.head.nlmsg_flags = NLM_F_REQUEST;
-  question.wanted.sdiag_family = static_cast<uint8_t>(peer.family);
+  question.wanted.sdiag_family = static_cast<uint8_t>(family);
   question.wanted.sdiag_protocol = IPPROTO_TCP;
+  return question;
+}
+
+/// The kernel's answer; nothing where it gives none.
+std::optional<Told> ask_kernel(const Question& question) {
+  const core::Descriptor kernel(::socket(AF_NETLINK, SOCK_RAW | SOCK_CLOEXEC, NETLINK_SOCK_DIAG));
+  if (!kernel.valid() || ::send(kernel.get(), &question, sizeof question, 0) < 0) {
+    return std::nullopt;
+  }
+  Told told;
+  const ssize_t got = ::recv(kernel.get(), &told, sizeof told, MSG_DONTWAIT);
+  return got < static_cast<ssize_t>(sizeof told.head) ? std::nullopt : std::optional(told);
+}
+
+/// Who holds the end at `peer` of the connection from there to `own`; nothing where the kernel
+/// knows none, or cannot tell.
+std::optional<uid_t> holder(const Place& peer, const Place& own) {
+  Question question = question_about(peer.family);
   question.wanted.idiag_states = 1U << kEstablished;
   question.wanted.id.idiag_sport = peer.port;
   question.wanted.id.idiag_dport = own.port;
   std::memcpy(question.wanted.id.idiag_src, peer.host.data(), sizeof peer.host);
   std::memcpy(question.wanted.id.idiag_dst, own.host.data(), sizeof own.host);
   for (uint32_t& any : question.wanted.id.idiag_cookie) any = INET_DIAG_NOCOOKIE;
-  const core::Descriptor kernel(::socket(AF_NETLINK, SOCK_RAW | SOCK_CLOEXEC, NETLINK_SOCK_DIAG));
-  if (!kernel.valid() || ::send(kernel.get(), &question, sizeof question, 0) < 0) {
+  const auto told = ask_kernel(question);
+  if (!told || told->head.nlmsg_type != SOCK_DIAG_BY_FAMILY ||
+      told->found.idiag_state != kEstablished) {
     return std::nullopt;
   }
-  struct {
-    nlmsghdr head{};
-    inet_diag_msg found{};
-    std::array<std::byte, 512> more{};
-  } answer;
-  const ssize_t got = ::recv(kernel.get(), &answer, sizeof answer, MSG_DONTWAIT);
-  if (got < static_cast<ssize_t>(sizeof answer.head + sizeof answer.found) ||
-      answer.head.nlmsg_type != SOCK_DIAG_BY_FAMILY || answer.found.idiag_state != kEstablished) {
-    return std::nullopt;
-  }
-  return answer.found.idiag_uid;
+  return told->found.idiag_uid;
+}
+
+/// Whether the kernel can tell at all: one that was built without says of each connection that
+/// there is none. A list of those in no state ends at once where it can.
+bool kernel_can_tell(int family) {
+  Question question = question_about(family);
+  question.head.nlmsg_flags |= NLM_F_DUMP;
+  const auto told = ask_kernel(question);
+  return told && told->head.nlmsg_type == NLMSG_DONE;
 }
 
 /// Of "0100007F:1F90": words of 32 bits in the processor's order, and the port as a number.
@@ -103,7 +127,7 @@ std::string text_of(const Place& place) {
   return address_text(host.data(), std::to_string(ntohs(place.port)));
 }
 
-/// Of connections to any address, so that we need not know at which of all we are called.
+/// Of connections to any of our addresses.
 std::set<uid_t> read_table(const std::string& peer, const std::set<in_port_t>& ports) {
   std::set<uid_t> users;
   for (const char* path : {"/proc/net/tcp", "/proc/net/tcp6"}) {
@@ -134,16 +158,15 @@ std::set<uid_t> users_of_peer(const std::string& peer, const std::set<std::strin
   if (!from) return {};
   std::set<uid_t> users;
   std::set<in_port_t> ports;
-  bool everywhere = false;
   for (const std::string& each : ours) {
     const auto own = read_place(each);
     if (!own) continue;
     ports.insert(own->port);
-    everywhere = everywhere || own->host == Place().host;
     if (own->family != from->family) continue;
-    if (const auto user = ask_kernel(*from, *own)) users.insert(*user);
+    if (const auto user = holder(*from, *own)) users.insert(*user);
   }
-  return users.empty() || everywhere ? read_table(peer, ports) : users;
+  // Who is not found has gone mostly, and hears no answer: nobody shall wait for that.
+  return !users.empty() || kernel_can_tell(from->family) ? users : read_table(peer, ports);
 }
 
 }  // namespace hyades::coordinator

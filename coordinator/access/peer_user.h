@@ -13,9 +13,10 @@ namespace hyades::coordinator {
 /// there is no such connection, or it is closing: what nobody holds any more counts as root's.
 ///
 /// The kernel is asked anew each time, for a port may be another user's at once. It finds one
-/// connection in microseconds (sock_diag(7)); where it cannot, because it was built without that or
-/// we listen at all addresses, we read the table of all (/proc/net/tcp, proc_pid_net(5)), which
-/// takes milliseconds.
+/// connection in microseconds (sock_diag(7)), if we name both ends: of those to a socket that
+/// listens at all addresses it finds none, but such a coordinator asks for tokens. Only where it
+/// cannot tell, because it was built without that, we read the table of all connections
+/// (/proc/net/tcp, proc_pid_net(5)), which takes milliseconds and more the more there are.
 std::set<uid_t> users_of_peer(const std::string& peer, const std::set<std::string>& ours);
 
 }  // namespace hyades::coordinator
