@@ -14,6 +14,7 @@
 #include "coordinator/controller/disk_watch.h"
 #include "coordinator/controller/not_found.h"
 #include "coordinator/controller/stored_outputs.h"
+#include "coordinator/controller/within_memory.h"
 #include "core/base/text.h"
 #include "core/film/film_exr.h"
 #include "core/image/read_image.h"
@@ -132,6 +133,23 @@ grpc::Status no_room(uint64_t bytes, const FilmCopies& copies) {
 
 /// What a film of so many bytes takes with the picture that is made of it.
 uint64_t with_picture(uint64_t film_bytes) { return film_bytes / 2 * 3; }
+
+/// A copy of the frame's film, on the film store's thread. `most`: bytes of one that is set aside.
+grpc::Status copy_of(const FilmStore& store, int32_t frame, uint64_t most, FilmCopies& copies,
+                     std::shared_ptr<const core::Film>& copy) {
+  auto film = store.film(frame);
+  const bool aside = store.is_aside(frame);
+  if (!film && !aside) return nothing_yet();
+  const uint64_t bytes = with_picture(film ? film->memory() : most);
+  const auto room = copies.hold(bytes);
+  if (!room) return no_room(bytes, copies);
+  if (aside) {
+    if (auto kept = store.read_aside(frame)) film = std::move(*kept);
+  }
+  if (!film) return nothing_yet();
+  copy = kept_with(room, core::Film(*film));
+  return grpc::Status::OK;
+}
 
 }  // namespace
 
@@ -311,8 +329,8 @@ grpc::Status JobQueries::frame_now(uint64_t id, int32_t frame, FrameNow& now) {
       const auto noted = active->frames.find(frame);
       if (noted == active->frames.end()) return no_frame(id, frame);
       now.frame = active->describe_frame(frame, noted->second);
-      now.tag = fmt::format("\"{}.{}.{}\"", context_.started_ms, context_.incarnation,
-                            noted->second.version);
+      now.tag = fmt::format("\"{}.{}.{}.{}\"", context_.started_ms, context_.incarnation,
+                            active->life, noted->second.version);
       now.tone_map = active->tone_map;
       now.exposure = active->exposure;
       return grpc::Status::OK;
@@ -328,8 +346,17 @@ grpc::Status JobQueries::frame_now(uint64_t id, int32_t frame, FrameNow& now) {
   return grpc::Status::OK;
 }
 
+grpc::Status JobQueries::give_kept_film(uint64_t id, int32_t frame, const FilmTaker& then) {
+  core::FilmInfo info;
+  std::shared_ptr<const core::Film> film;
+  const grpc::Status read = within_memory([&] { return kept_film(id, frame, info, film); });
+  if (read.ok()) then(read, info, std::move(film));
+  return read;
+}
+
 /// The film of a frame that is done.
-grpc::Status JobQueries::kept_film(uint64_t id, int32_t frame, const FilmTaker& then) {
+grpc::Status JobQueries::kept_film(uint64_t id, int32_t frame, core::FilmInfo& info,
+                                   std::shared_ptr<const core::Film>& film) {
   const auto stored = context_.store->summary(id);
   if (const grpc::Status there = job_is_there(id, stored); !there.ok()) return there;
   const auto outputs = context_.store->outputs_of(id, frame);
@@ -347,7 +374,8 @@ grpc::Status JobQueries::kept_film(uint64_t id, int32_t frame, const FilmTaker& 
     if (!room) return no_room(with_picture(*memory), copies);
     auto file = core::read_film_exr(*bytes, output.path);
     if (!file) return {grpc::StatusCode::DATA_LOSS, file.error().message};
-    then(grpc::Status::OK, file->info, kept_with(room, std::move(file->film)));
+    info = std::move(file->info);
+    film = kept_with(room, std::move(file->film));
     return grpc::Status::OK;
   }
   return {grpc::StatusCode::FAILED_PRECONDITION,
@@ -421,7 +449,7 @@ grpc::Status JobQueries::copy_film(uint64_t id, int32_t frame, std::optional<cor
   ActiveJob* active = jobs_.find(id);
   if (active == nullptr || active->ending) {
     lock.unlock();
-    return kept_film(id, frame, then);
+    return give_kept_film(id, frame, then);
   }
   const auto noted = active->frames.find(frame);
   if (noted == active->frames.end()) {
@@ -429,26 +457,19 @@ grpc::Status JobQueries::copy_film(uint64_t id, int32_t frame, std::optional<cor
   }
   if (noted->second.state == v1::FRAME_STATE_DONE) {
     lock.unlock();
-    return kept_film(id, frame, then);
+    return give_kept_film(id, frame, then);
   }
   // Without `info` it has begun to grow just now.
   if (!active->film_store || !info) return nothing_yet();
   info->worker_class = noted->second.worker_class;
   // The film store's thread copies, as only it may look at films while they grow.
-  active->film_store->call([film_store = active->film_store.get(), copies = &context_.film_copies,
+  active->film_store->call([film_store = active->film_store.get(), &copies = context_.film_copies,
                             frame, most = active->film_bytes, info = std::move(*info),
                             then = std::move(then)] {
-    auto film = film_store->film(frame);
-    const bool aside = film_store->is_aside(frame);
-    if (!film && !aside) return then(nothing_yet(), info, nullptr);
-    const uint64_t bytes = with_picture(film ? film->memory() : most);
-    const auto room = copies->hold(bytes);
-    if (!room) return then(no_room(bytes, *copies), info, {});
-    if (aside) {
-      if (auto copy = film_store->read_aside(frame)) film = std::move(*copy);
-    }
-    if (!film) return then(nothing_yet(), info, nullptr);
-    then(grpc::Status::OK, info, kept_with(room, core::Film(*film)));
+    std::shared_ptr<const core::Film> film;
+    const grpc::Status copied =
+        within_memory([&] { return copy_of(*film_store, frame, most, copies, film); });
+    then(copied, info, std::move(film));
   });
   return grpc::Status::OK;
 }

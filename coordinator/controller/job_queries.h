@@ -36,7 +36,8 @@ struct ChangeCursor {
 /// A frame as it is now, and how its job shows it.
 struct FrameNow {
   v1::Frame frame;
-  std::string tag;  ///< quoted; another one whenever the frame has changed; of open jobs only
+  /// Quoted; another one whenever the frame has changed, or its job begun anew; of open jobs only.
+  std::string tag;
   std::string tone_map = "srgb";  ///< of the job's first output for displays; of open jobs only
   float exposure = 0;             ///< of that output, in stops; of open jobs only
 };
@@ -107,7 +108,9 @@ class JobQueries {
   void count_cost(v1::Job& job) const;
   grpc::Status copy_film(uint64_t job, int32_t frame, std::optional<core::FilmInfo> info,
                          FilmTaker then) HYADES_EXCLUDES(state_lock);
-  grpc::Status kept_film(uint64_t job, int32_t frame, const FilmTaker& then);
+  grpc::Status give_kept_film(uint64_t job, int32_t frame, const FilmTaker& then);
+  grpc::Status kept_film(uint64_t job, int32_t frame, core::FilmInfo& info,
+                         std::shared_ptr<const core::Film>& film);
 
   ControllerContext& context_;
   Dispatcher& dispatcher_;

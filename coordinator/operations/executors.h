@@ -2,7 +2,6 @@
 
 #include <chrono>
 #include <mutex>
-#include <new>
 
 #include <grpcpp/support/status.h>
 
@@ -59,19 +58,6 @@ inline grpc::Status another_is_large() {
   return farm::retry_later(grpc::StatusCode::RESOURCE_EXHAUSTED,
                            "another large request is being looked at",
                            std::chrono::milliseconds(500));
-}
-
-/// What `question` answers, or RESOURCE_EXHAUSTED where there is no memory for the answer now. For
-/// questions that change nothing: a change that breaks off in its middle ends the process
-/// (farm/last_words.h).
-template <class Question>
-grpc::Status within_memory(const Question& question) {
-  try {
-    return question();
-  } catch (const std::bad_alloc&) {
-    return farm::retry_later(grpc::StatusCode::RESOURCE_EXHAUSTED,
-                             "the coordinator has no memory for this now", std::chrono::seconds(2));
-  }
 }
 
 }  // namespace hyades::coordinator

@@ -2,6 +2,7 @@
 
 #include <memory>
 
+#include "coordinator/controller/within_memory.h"
 #include "coordinator/operations/executors.h"
 
 namespace hyades::coordinator {

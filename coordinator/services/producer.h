@@ -11,6 +11,7 @@
 #include <grpcpp/support/status.h>
 
 #include "coordinator/access/caller.h"
+#include "coordinator/controller/within_memory.h"
 #include "coordinator/operations/executors.h"
 #include "coordinator/services/admission.h"
 #include "core/base/mutex.h"

@@ -14,6 +14,7 @@
 
 #include "coordinator/access/caller.h"
 #include "coordinator/controller/owner_connections.h"
+#include "coordinator/controller/within_memory.h"
 #include "coordinator/operations/ownership.h"
 #include "coordinator/services/request_call.h"
 #include "core/base/mutex.h"

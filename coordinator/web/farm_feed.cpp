@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "coordinator/controller/all_pages.h"
+#include "coordinator/controller/within_memory.h"
 #include "farm/json_form.h"
 
 namespace hyades::coordinator {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "coordinator/controller/within_memory.h"
 #include "coordinator/operations/executors.h"
 #include "coordinator/web/live_readers.h"
 #include "farm/json_form.h"

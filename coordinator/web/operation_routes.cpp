@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "coordinator/access/caller.h"
+#include "coordinator/controller/within_memory.h"
 #include "coordinator/web/request_form.h"
 #include "coordinator/web/route_helpers.h"
 

@@ -2,11 +2,14 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <iterator>
+#include <set>
 #include <utility>
 
 #include <fmt/format.h>
 
 #include "coordinator/controller/stored_outputs.h"
+#include "coordinator/controller/within_memory.h"
 #include "coordinator/operations/file_transfer.h"
 #include "coordinator/web/picture_encoding.h"
 #include "coordinator/web/route_helpers.h"
@@ -25,6 +28,8 @@ constexpr std::chrono::milliseconds kFreshFor{1000};
 constexpr size_t kMostInWork = 2;
 constexpr size_t kMostFrames = 1000;
 constexpr int kMostFramesOfOne = 500;
+/// In the queue, where a frame has one for each who has asked for it.
+constexpr size_t kMostPlaces = 4000;
 
 bool is_over(const v1::Frame& frame) { return frame.state() == v1::FRAME_STATE_DONE; }
 
@@ -124,8 +129,12 @@ void PicturesApi::add_routes(Router& router) {
           return;
         }
         const Asker asker{owner_of(from.caller), answer};
-        const bool taken =
-            pool_.submit([this, asked, asker] { answer_picture(asked, asker); }, asker.owner.name);
+        const bool taken = pool_.submit(
+            [this, asked, asker] {
+              answer_picture(asked, asker);
+              begin_some();
+            },
+            asker.owner.name);
         if (!taken) answer(error_reply(crowded()));
       });
 }
@@ -146,7 +155,7 @@ void PicturesApi::answer_picture(const Asked& asked, const Asker& asker) {
   }
   if (const auto made = find(asked, tag, over)) return asker.answer(*made);
   if (!has_room(asker.owner)) return asker.answer(too_many());
-  want(asked, asker);
+  if (!enqueue(asked, asker)) asker.answer(error_reply(crowded()));
 }
 
 /// The finished file that shows best what is asked for; nothing where none shows it.
@@ -168,8 +177,8 @@ struct PicturesApi::OpenFile {
   core::Image image;
 };
 
-WebReply PicturesApi::of_file(const Asked& asked, const Askers& askers, const FrameNow& now,
-                              std::optional<OpenFile>& open) {
+WebReply PicturesApi::of_file(const Asked& asked, const farm::ByteBudget::Owner& owner,
+                              const FrameNow& now, std::optional<OpenFile>& open) {
   const auto best = best_file(asked);
   if (!best) return error_reply(farm::unavailable(best.error()));
   if (!*best) {
@@ -179,9 +188,6 @@ WebReply PicturesApi::of_file(const Asked& asked, const Askers& askers, const Fr
   const StoredOutput& file = **best;
   const std::string tag = tag_of(file);
   if (const auto made = find(asked, tag, true)) return *made;
-  const auto who = std::find_if(askers.begin(), askers.end(),
-                                [&](const Asker& asker) { return has_room(asker.owner); });
-  if (who == askers.end()) return too_many();
   if (!open || open->path != file.path) {
     open.reset();
     OpenFile fresh;
@@ -199,28 +205,23 @@ WebReply PicturesApi::of_file(const Asked& asked, const Askers& askers, const Fr
   plain.exposure = 0;
   const bool exact = core::file_extension(file.path) == ".exr";
   WebReply reply = show(asked, plain, {open->image, {}, exact}, tag);
-  count(reply, who->owner);
-  keep(asked, tag, true, reply);
+  count(reply, owner);
+  keep(asked, tag, true, reply, owner);
   return reply;
 }
 
-/// Answers with a picture of the frame, when its turn comes.
-void PicturesApi::want(const Asked& asked, const Asker& asker) {
-  if (!enqueue(asked, asker)) return asker.answer(error_reply(crowded()));
-  begin_some();
-}
-
-/// False where too many frames wait, or too many pictures of this one.
+/// Has the picture made when its frame has a turn, which comes by whoever asks for the frame:
+/// others may have asked first, and for very many. False where too many frames wait, or too many
+/// pictures of this one.
 bool PicturesApi::enqueue(const Asked& asked, const Asker& asker) {
   const JobAndFrame id{asked.job, asked.frame};
+  const std::string& owner = asker.owner.name;
   const core::MutexLock lock(mutex_);
   const auto known = wanted_.find(id);
-  if (known == wanted_.end()) {
-    if (!may_wait(asker.owner.name)) return false;
-    queue_.emplace_back(id, asker.owner.name);
-  } else if (!may_want(known->second, asked, asker.owner.name)) {
-    return false;
-  }
+  const bool first = known == wanted_.end();
+  const bool has_place = may_wait(owner);
+  if (first ? !has_place : !may_want(known->second, asked, owner)) return false;
+  if (has_place) line_up(id, owner);
   wanted_[id][asked].push_back(asker);
   return true;
 }
@@ -229,7 +230,15 @@ bool PicturesApi::enqueue(const Asked& asked, const Asker& asker) {
 bool PicturesApi::may_wait(const std::string& owner) const {
   const auto own = std::count_if(queue_.begin(), queue_.end(),
                                  [&](const auto& one) { return one.second == owner; });
-  return wanted_.size() < kMostFrames && (owner.empty() || own < kMostFramesOfOne);
+  return wanted_.size() < kMostFrames && queue_.size() < kMostPlaces &&
+         (owner.empty() || own < kMostFramesOfOne);
+}
+
+/// The frame waits for a turn of the owner's, before all others or behind them, if it does not yet.
+void PicturesApi::line_up(JobAndFrame id, const std::string& owner, bool in_front) {
+  const std::pair place{id, owner};
+  if (std::find(queue_.begin(), queue_.end(), place) != queue_.end()) return;
+  queue_.insert(in_front ? queue_.begin() : queue_.end(), place);
 }
 
 /// Whether the owner may wait for one more of the frame: what somebody waits for already is free.
@@ -246,70 +255,45 @@ void PicturesApi::begin_some() {
   while (const auto id = begin_next()) take(*id);
 }
 
+/// Whether a frame is in work by a turn of the owner's.
+bool PicturesApi::has_turn(const std::string& owner) const {
+  return !owner.empty() && std::any_of(in_work_.begin(), in_work_.end(),
+                                       [&](const auto& one) { return one.second.owner == owner; });
+}
+
 /// The frame whose turn it is; none: as many are in work as may be, or their callers'.
 std::optional<PicturesApi::JobAndFrame> PicturesApi::begin_next() {
   const core::MutexLock lock(mutex_);
   const Clock::time_point now = Clock::now();
-  if (alone_) {
-    if (!in_work_.empty()) return std::nullopt;
-    const auto [id, owner] = *std::exchange(alone_, std::nullopt);
-    in_work_[id] = {owner, now, true};
-    return id;
-  }
   const bool one_alone = std::any_of(in_work_.begin(), in_work_.end(),
                                      [](const auto& one) { return one.second.alone; });
   if (one_alone || in_work_.size() >= kMostInWork) return std::nullopt;
-  const auto has_one = [&](const std::string& owner) HYADES_REQUIRES(mutex_) {
-    return !owner.empty() && std::any_of(in_work_.begin(), in_work_.end(), [&](const auto& one) {
-      return one.second.owner == owner;
-    });
-  };
   // What was asked for while the pictures before are sent comes after them. (Clang does not see
   // that the lock is held where this is called.)
   const auto best = shares_.next(
       queue_.begin(), queue_.end(), now,
       [&](const std::pair<JobAndFrame, std::string>& one) HYADES_NO_THREAD_SAFETY_ANALYSIS {
-        const bool may = !in_work_.contains(one.first) && !has_one(one.second);
+        const bool may = !in_work_.contains(one.first) && !has_turn(one.second);
         return may ? &one.second : nullptr;
       });
   if (best == queue_.end()) return std::nullopt;
-  const JobAndFrame id = best->first;
-  in_work_[id] = {best->second, now};
-  queue_.erase(best);
+  const auto [id, owner] = *best;
+  // Nothing else begins meanwhile: the memory would always be another's.
+  if (alone_.contains(id) && !in_work_.empty()) return std::nullopt;
+  in_work_[id] = {owner, now, now, alone_.erase(id) > 0};
   return id;
-}
-
-/// The frame has found no memory beside another one: it goes on when that is over, alone, with what
-/// is `left` of what was taken already. False where it was alone.
-bool PicturesApi::put_back(JobAndFrame id, const Wanted& left) {
-  const core::MutexLock lock(mutex_);
-  if (in_work_.at(id).alone) return false;  // others than these have the memory
-  for (const auto& [asked, askers] : left) {
-    Askers& all = wanted_[id][asked];
-    all.insert(all.end(), askers.begin(), askers.end());
-  }
-  const auto work = in_work_.extract(id);
-  std::pair<JobAndFrame, std::string> waits{id, work.mapped().owner};
-  if (alone_) {
-    queue_.push_front(std::move(waits));
-  } else {
-    alone_ = std::move(waits);
-  }
-  // What was beside it may be over by now.
-  (void)pool_.submit([this] { begin_some(); });
-  return true;
 }
 
 void PicturesApi::take(JobAndFrame id) {
   // As of before the film, so that the picture never claims more than it shows.
   FrameNow now;
-  if (is_closed()) return end(id, [](const Asked&, const Askers&) { return closing(); });
+  if (is_closed()) return end(id, closing());
   const grpc::Status status = controller_.queries().frame_now(id.first, id.second, now);
   if (!status.ok()) {
-    end(id, [&](const Asked&, const Askers&) { return error_reply(status); });
+    end(id, error_reply(status));
   } else if (is_over(now.frame)) {
     const bool taken = pool_.submit([this, id, now] { take_files(id, now); });
-    if (!taken) end(id, [](const Asked&, const Askers&) { return error_reply(crowded()); });
+    if (!taken) end(id, error_reply(crowded()));
   } else {
     take_film(id, now);
   }
@@ -326,44 +310,28 @@ void PicturesApi::take_film(JobAndFrame id, const FrameNow& now) {
         const bool taken = pool_.submit([this, id, now, found, film = std::move(film)]() mutable {
           make_all(id, now, found, std::move(film));
         });
-        if (!taken) {
-          end(id, [](const Asked&, const Askers&) { return error_reply(crowded()); });
-        }
+        if (!taken) end(id, error_reply(crowded()));
       });
   if (status.ok()) return;
-  if (lacks_room(status) && put_back(id, {})) return;
+  if (lacks_room(status) && !turn_of(id).alone) return leave(id, {}, true);
   // Done meanwhile: those who ask again get the finished picture.
   if (status.error_code() == grpc::StatusCode::FAILED_PRECONDITION) {
     status = farm::retry_later(grpc::StatusCode::UNAVAILABLE, "the frame is being finished",
                                std::chrono::milliseconds(500));
   }
-  end(id, [&](const Asked&, const Askers&) { return error_reply(status); });
+  end(id, error_reply(status));
 }
 
-/// Makes what is wanted of a finished frame by now. What finds no memory waits until nothing else
-/// is in work, together with what was not made yet.
 void PicturesApi::take_files(JobAndFrame id, const FrameNow& now) {
-  Wanted wanted = take_wanted(id);
-  std::optional<OpenFile> open;
-  while (!wanted.empty()) {
-    const auto& [asked, askers] = *wanted.begin();
-    const WebReply made = is_closed()
-                              ? closing()
-                              : reply_in_memory([&] { return of_file(asked, askers, now, open); });
-    if (made.status == 503) {
-      open.reset();  // it may be what is missing
-      if (put_back(id, wanted)) return;
-    }
-    for (const Asker& asker : askers) asker.answer(made);
-    wanted.erase(wanted.begin());
-  }
-  open.reset();
-  leave(id);
+  make_wanted(id, [this, now, open = std::optional<OpenFile>()](
+                      const Asked& asked, const farm::ByteBudget::Owner& owner) mutable {
+    return of_file(asked, owner, now, open);
+  });
 }
 
 void PicturesApi::make_all(JobAndFrame id, const FrameNow& now, const grpc::Status& found,
                            std::shared_ptr<const core::Film> film) {
-  if (lacks_room(found) && put_back(id, {})) return;
+  if (lacks_room(found) && !turn_of(id).alone) return leave(id, {}, true);
   core::Image image;
   SampledMask sampled;
   const grpc::Status made = !found.ok() ? found : within_memory([&] {
@@ -371,35 +339,100 @@ void PicturesApi::make_all(JobAndFrame id, const FrameNow& now, const grpc::Stat
     sampled = sampled_pixels(*film);
     return grpc::Status::OK;
   });
-  answer_all(id, [&](const Asked& asked, const Askers& askers) {
-    if (is_closed()) return closing();
-    if (!made.ok()) return error_reply(made);
-    const auto has_some = [&](const Asker& asker) { return has_room(asker.owner); };
-    const auto who = std::find_if(askers.begin(), askers.end(), has_some);
-    if (who == askers.end()) return too_many();
-    return reply_in_memory([&] {
-      WebReply reply = show(asked, now, {image, sampled}, now.tag);
-      count(reply, who->owner);
-      keep(asked, now.tag, false, reply);
-      return reply;
-    });
+  make_wanted(
+      id, [this, now, made, room = std::move(film), image = std::move(image),
+           sampled = std::move(sampled)](const Asked& asked, const farm::ByteBudget::Owner& owner) {
+        if (!made.ok()) return error_reply(made);
+        WebReply reply = show(asked, now, {image, sampled}, now.tag);
+        count(reply, owner);
+        keep(asked, now.tag, false, reply, owner);
+        return reply;
+      });
+}
+
+/// Makes what is wanted of the frame by now, until its turn is over. What finds no memory beside
+/// another frame is made in a turn alone.
+void PicturesApi::make_wanted(JobAndFrame id, Make make) {
+  const Turn turn = turn_of(id);
+  Wanted wanted = take_wanted(id);
+  bool no_room = false;
+  for (bool over = false; !wanted.empty() && !over;) {
+    const auto next = next_of(wanted, turn.owner);
+    const auto& [asked, askers] = *next;
+    const auto who = std::find_if(askers.begin(), askers.end(),
+                                  [&](const Asker& asker) { return has_room(asker.owner); });
+    const bool may = !is_closed() && who != askers.end();
+    const WebReply made =
+        may           ? reply_in_memory([&, &asked = asked] { return make(asked, who->owner); })
+        : is_closed() ? closing()
+                      : too_many();
+    no_room = may && made.status == 503 && !turn.alone;
+    if (no_room) break;
+    charge(id, payer_of(askers, turn.owner));
+    for (const Asker& asker : askers) asker.answer(made);
+    wanted.erase(next);
+    over =
+        !wanted.empty() && gives_way(id, payer_of(next_of(wanted, turn.owner)->second, turn.owner));
+  }
+  make = nullptr;  // who is next needs its room
+  leave(id, wanted, no_room);
+}
+
+/// What is made next in a turn of the owner's: what he waits for before what others do.
+PicturesApi::Wanted::iterator PicturesApi::next_of(Wanted& wanted, const std::string& owner) {
+  const auto his = std::find_if(wanted.begin(), wanted.end(), [&](const auto& one) {
+    return payer_of(one.second, owner) == owner;
   });
-  film.reset();  // who is next needs its room
-  leave(id);
+  return his == wanted.end() ? wanted.begin() : his;
+}
+
+/// Whose time it takes to make a picture, in a turn of the owner's.
+const std::string& PicturesApi::payer_of(const Askers& askers, const std::string& owner) {
+  const bool his = std::any_of(askers.begin(), askers.end(),
+                               [&](const Asker& asker) { return asker.owner.name == owner; });
+  return his ? owner : askers.front().owner.name;
+}
+
+PicturesApi::Turn PicturesApi::turn_of(JobAndFrame id) {
+  const core::MutexLock lock(mutex_);
+  return in_work_.at(id);
+}
+
+/// What the turn has taken since this was last called was for `whom`.
+void PicturesApi::charge(JobAndFrame id, const std::string& whom) {
+  const core::MutexLock lock(mutex_);
+  Turn& turn = in_work_.at(id);
+  const Clock::time_point now = Clock::now();
+  const std::chrono::duration<double> taken = now - std::exchange(turn.charged, now);
+  if (!whom.empty()) shares_.use(whom, taken.count(), now);
+}
+
+/// Whether the frame's turn ends before its next picture, which is for `whom`: it has lasted for
+/// long, and somebody may be next for whom lately less time was spent.
+bool PicturesApi::gives_way(JobAndFrame id, const std::string& whom) {
+  const core::MutexLock lock(mutex_);
+  const Clock::time_point now = Clock::now();
+  if (now - in_work_.at(id).begun < longest_turn_) return false;
+  const double used = shares_.used(whom, now);
+  return std::any_of(queue_.begin(), queue_.end(), [&](const auto& one) HYADES_REQUIRES(mutex_) {
+    const bool may = one.first == id || !in_work_.contains(one.first);
+    return may && !has_turn(one.second) && shares_.used(one.second, now) < used;
+  });
 }
 
 /// Whether a picture may be made for the owner: how large it becomes is not known before.
 bool PicturesApi::has_room(const farm::ByteBudget::Owner& owner) {
   if (held_->has_room(owner, 1)) return true;
-  // What is kept in case somebody asks for it gives way to what somebody asks for.
-  Kept gone;
+  // What is kept in case somebody asks for it gives way to what somebody asks for: what counts for
+  // him, or, where others have taken the room, all.
+  const bool his_alone = held_->has_room({}, 1);
   {
     const core::MutexLock lock(mutex_);
-    gone.swap(kept_);
-    index_.clear();
-    kept_bytes_ = 0;
+    for (auto next = kept_.begin(); next != kept_.end();) {
+      const auto one = next++;
+      if (!his_alone || one->second.owner == owner.name) forget(one);
+    }
   }
-  gone.clear();
   return held_->has_room(owner, 1);
 }
 
@@ -423,35 +456,40 @@ void PicturesApi::count(WebReply& reply, const farm::ByteBudget::Owner& owner) c
 /// What is wanted of the frame by now; what is asked for from now on comes after it.
 PicturesApi::Wanted PicturesApi::take_wanted(JobAndFrame id) {
   const core::MutexLock lock(mutex_);
+  std::erase_if(queue_, [&](const auto& one) { return one.first == id; });
   auto wanted = wanted_.extract(id);
   return wanted ? std::move(wanted.mapped()) : Wanted();
 }
 
-/// Everybody who waits for pictures of the frame gets them.
-void PicturesApi::answer_all(JobAndFrame id, const ReplyFor& reply) {
+/// Everybody who waits for pictures of the frame is told this.
+void PicturesApi::end(JobAndFrame id, const WebReply& reply) {
   for (const auto& [asked, askers] : take_wanted(id)) {
-    const WebReply made = reply(asked, askers);
-    for (const Asker& asker : askers) asker.answer(made);
+    for (const Asker& asker : askers) asker.answer(reply);
   }
+  leave(id, {}, false);
 }
 
-void PicturesApi::end(JobAndFrame id, const ReplyFor& reply) {
-  answer_all(id, reply);
-  leave(id);
-}
-
-/// The frame is not in work any more: counts what it has taken, and the next begins.
-void PicturesApi::leave(JobAndFrame id) {
+/// The frame's turn is over, and the next begins. For what is `left` of it, or was not taken, there
+/// is another one: alone and before other frames of the same callers, where there was `no_room`.
+void PicturesApi::leave(JobAndFrame id, const Wanted& left, bool no_room) {
+  charge(id, turn_of(id).owner);
   {
     const core::MutexLock lock(mutex_);
-    if (const auto over = in_work_.extract(id)) {
-      const InWork& work = over.mapped();
-      const Clock::time_point now = Clock::now();
-      if (!work.owner.empty()) {
-        shares_.use(work.owner, std::chrono::duration<double>(now - work.since).count(), now);
+    in_work_.erase(id);
+    if (no_room) alone_.insert(id);
+    for (const auto& [asked, askers] : left) {
+      Askers& all = wanted_[id][asked];
+      all.insert(all.end(), askers.begin(), askers.end());
+    }
+    std::set<std::string> owners;
+    if (const auto again = wanted_.find(id); again != wanted_.end()) {
+      for (const auto& [asked, askers] : again->second) {
+        for (const Asker& asker : askers) owners.insert(asker.owner.name);
       }
     }
+    for (const std::string& owner : owners) line_up(id, owner, no_room);
   }
+  // Where so much waits that this may not, whatever is asked for next begins with what is next.
   (void)pool_.submit([this] { begin_some(); });
 }
 
@@ -466,23 +504,21 @@ std::optional<WebReply> PicturesApi::find(const Asked& asked, const std::string&
   return made.reply;
 }
 
-void PicturesApi::keep(const Asked& asked, const std::string& tag, bool over,
-                       const WebReply& reply) {
+void PicturesApi::keep(const Asked& asked, const std::string& tag, bool over, const WebReply& reply,
+                       const farm::ByteBudget::Owner& owner) {
   if (reply.status != 200) return;
   const core::MutexLock lock(mutex_);
-  const auto old = index_.find(asked);
-  if (old != index_.end()) {
-    kept_bytes_ -= old->second->second.reply.text->size();
-    kept_.erase(old->second);
-  }
-  kept_.emplace_front(asked, Made{tag, over, Clock::now(), reply});
+  if (const auto old = index_.find(asked); old != index_.end()) forget(old->second);
+  kept_.emplace_front(asked, Made{tag, over, Clock::now(), reply, owner.name});
   index_[asked] = kept_.begin();
   kept_bytes_ += reply.text->size();
-  while (kept_bytes_ > kMostKeptBytes && kept_.size() > 1) {
-    kept_bytes_ -= kept_.back().second.reply.text->size();
-    index_.erase(kept_.back().first);
-    kept_.pop_back();
-  }
+  while (kept_bytes_ > kMostKeptBytes && kept_.size() > 1) forget(std::prev(kept_.end()));
+}
+
+void PicturesApi::forget(Kept::iterator one) {
+  kept_bytes_ -= one->second.reply.text->size();
+  index_.erase(one->first);
+  kept_.erase(one);
 }
 
 }  // namespace hyades::coordinator

@@ -9,6 +9,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -25,9 +26,10 @@ namespace hyades::coordinator {
 /// Frames as they are now: of the film in mid-render, of a finished file afterwards. What was made
 /// once is kept for all who ask. What is asked of a frame is made together, of one copy of its film
 /// at most once a second, and of two frames at a time, for different callers: next is for whom
-/// lately least time was spent. A frame for which there is no memory beside the other one is next
-/// when that is over. Pictures that somebody takes his time to read count until he has them, and
-/// where they are too many no more are made.
+/// lately least time was spent. Such a turn ends between two pictures once it has lasted for long,
+/// and somebody waits for whom less was spent. A frame for which there is no memory beside the
+/// other one has its next turn alone. Pictures that somebody takes his time to read count until he
+/// has them, and where they are too many no more are made.
 class PicturesApi {
  public:
   /// Of all pictures together, kept or on their way, and of those that were made for one caller.
@@ -37,12 +39,18 @@ class PicturesApi {
   static constexpr size_t kMostOfFrame = 32;
   static constexpr size_t kMostOfFrameOfOne = 8;
 
+  static constexpr std::chrono::milliseconds kLongestTurn{2000};
+
   /// `held` counts the bytes of the pictures. What is begun with goes a picture beyond it for each
-  /// thread.
+  /// thread. `longest_turn`: after which another's begins, once a picture is made.
   explicit PicturesApi(Controller& controller,
                        std::shared_ptr<farm::ByteBudget> held =
-                           std::make_shared<farm::ByteBudget>(kMostBytes, kMostBytesOfOne))
-      : controller_(controller), gate_(std::make_shared<Gate>()), held_(std::move(held)) {}
+                           std::make_shared<farm::ByteBudget>(kMostBytes, kMostBytesOfOne),
+                       std::chrono::milliseconds longest_turn = kLongestTurn)
+      : controller_(controller),
+        gate_(std::make_shared<Gate>()),
+        held_(std::move(held)),
+        longest_turn_(longest_turn) {}
   PicturesApi(const PicturesApi&) = delete;
   PicturesApi& operator=(const PicturesApi&) = delete;
 
@@ -71,6 +79,7 @@ class PicturesApi {
     bool over = false;
     Clock::time_point at;
     WebReply reply;
+    std::string owner;  ///< whom its bytes are counted for
   };
   using Kept = std::list<std::pair<Asked, Made>>;
   /// Who waits for a picture.
@@ -79,10 +88,18 @@ class PicturesApi {
     Answer answer;
   };
   using Askers = std::vector<Asker>;
-  using ReplyFor = std::function<WebReply(const Asked&, const Askers&)>;
+  /// Makes a picture, and counts its bytes for the owner.
+  using Make = std::function<WebReply(const Asked&, const farm::ByteBudget::Owner&)>;
   /// The pictures that are wanted of a frame, and who waits for them.
   using Wanted = std::map<Asked, Askers>;
   using JobAndFrame = std::pair<uint64_t, int32_t>;
+  /// A frame in work.
+  struct Turn {
+    std::string owner;  ///< by whom its turn has come
+    Clock::time_point begun;
+    Clock::time_point charged;  ///< until when its time is counted
+    bool alone = false;         ///< nothing else is begun beside it
+  };
   /// Films come by threads that may outlive this.
   struct Gate {
     core::Mutex mutex;
@@ -92,12 +109,14 @@ class PicturesApi {
   void answer_picture(const Asked& asked, const Asker& asker);
   core::Result<std::optional<StoredOutput>> best_file(const Asked& asked);
   struct OpenFile;
-  WebReply of_file(const Asked& asked, const Askers& askers, const FrameNow& now,
+  WebReply of_file(const Asked& asked, const farm::ByteBudget::Owner& owner, const FrameNow& now,
                    std::optional<OpenFile>& open);
   bool is_closed() const;
-  void want(const Asked& asked, const Asker& asker);
   bool enqueue(const Asked& asked, const Asker& asker);
   bool may_wait(const std::string& owner) const HYADES_REQUIRES(mutex_);
+  bool has_turn(const std::string& owner) const HYADES_REQUIRES(mutex_);
+  void line_up(JobAndFrame id, const std::string& owner, bool in_front = false)
+      HYADES_REQUIRES(mutex_);
   std::optional<JobAndFrame> begin_next() HYADES_EXCLUDES(mutex_);
   static bool may_want(const Wanted& wanted, const Asked& asked, const std::string& owner);
   void begin_some();
@@ -105,39 +124,41 @@ class PicturesApi {
   void take_film(JobAndFrame id, const FrameNow& now);
   void take_files(JobAndFrame id, const FrameNow& now);
   Wanted take_wanted(JobAndFrame id) HYADES_EXCLUDES(mutex_);
-  bool put_back(JobAndFrame id, const Wanted& left) HYADES_EXCLUDES(mutex_);
   void make_all(JobAndFrame id, const FrameNow& now, const grpc::Status& found,
                 std::shared_ptr<const core::Film> film);
-  void answer_all(JobAndFrame id, const ReplyFor& reply);
-  void end(JobAndFrame id, const ReplyFor& reply);
-  void leave(JobAndFrame id);
+  void make_wanted(JobAndFrame id, Make make);
+  static Wanted::iterator next_of(Wanted& wanted, const std::string& owner);
+  static const std::string& payer_of(const Askers& askers, const std::string& owner);
+  Turn turn_of(JobAndFrame id) HYADES_EXCLUDES(mutex_);
+  void charge(JobAndFrame id, const std::string& whom) HYADES_EXCLUDES(mutex_);
+  bool gives_way(JobAndFrame id, const std::string& whom) HYADES_EXCLUDES(mutex_);
+  void end(JobAndFrame id, const WebReply& reply);
+  void leave(JobAndFrame id, const Wanted& left, bool no_room) HYADES_EXCLUDES(mutex_);
   bool has_room(const farm::ByteBudget::Owner& owner);
   void count(WebReply& reply, const farm::ByteBudget::Owner& owner) const;
   std::optional<WebReply> find(const Asked& asked, const std::string& tag, bool over);
-  void keep(const Asked& asked, const std::string& tag, bool over, const WebReply& reply);
+  void keep(const Asked& asked, const std::string& tag, bool over, const WebReply& reply,
+            const farm::ByteBudget::Owner& owner);
+  void forget(Kept::iterator one) HYADES_REQUIRES(mutex_);
 
   Controller& controller_;
   const std::shared_ptr<Gate> gate_;
   const std::shared_ptr<farm::ByteBudget>
       held_;  ///< connections may hold pictures for longer than this
+  const std::chrono::milliseconds longest_turn_;
   core::Mutex mutex_;
   Kept kept_ HYADES_GUARDED_BY(mutex_);  ///< what was asked for last is in front
   std::map<Asked, Kept::iterator> index_ HYADES_GUARDED_BY(mutex_);
   size_t kept_bytes_ HYADES_GUARDED_BY(mutex_) = 0;
   std::map<JobAndFrame, Wanted> wanted_ HYADES_GUARDED_BY(mutex_);
-  /// Frames whose turn has not come, and who has asked for them first.
+  /// Frames of wanted_, once for each who waits for pictures of them: those in work, too, until
+  /// they take what is wanted.
   std::deque<std::pair<JobAndFrame, std::string>> queue_ HYADES_GUARDED_BY(mutex_);
-  /// The frame for which there was no memory beside another: nothing else is begun before it, nor
-  /// beside it.
-  std::optional<std::pair<JobAndFrame, std::string>> alone_ HYADES_GUARDED_BY(mutex_);
-  struct InWork {
-    std::string owner;
-    Clock::time_point since;
-    bool alone = false;  ///< nothing else is begun beside it
-  };
+  /// Those of them for which there was no memory beside another: nothing else is begun beside them.
+  std::set<JobAndFrame> alone_ HYADES_GUARDED_BY(mutex_);
   /// Those whose films or files are being read or shown.
-  std::map<JobAndFrame, InWork> in_work_ HYADES_GUARDED_BY(mutex_);
-  farm::FairShares shares_ HYADES_GUARDED_BY(mutex_);  ///< seconds of films in work, of callers
+  std::map<JobAndFrame, Turn> in_work_ HYADES_GUARDED_BY(mutex_);
+  farm::FairShares shares_ HYADES_GUARDED_BY(mutex_);  ///< seconds of turns, of callers
   farm::ThreadPool pool_{2, 1000, 1};  ///< ends first: its threads use all of the above
 };
 

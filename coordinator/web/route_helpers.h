@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "coordinator/access/caller.h"
+#include "coordinator/controller/within_memory.h"
 #include "coordinator/operations/executors.h"
 #include "coordinator/web/exchange.h"
 #include "coordinator/web/request_form.h"

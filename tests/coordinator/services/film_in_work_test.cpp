@@ -1,9 +1,14 @@
 // Films that are looked at while they grow.
 #include <gtest/gtest.h>
+#include <sys/resource.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <atomic>
+#include <fstream>
+#include <future>
 #include <memory>
+#include <string>
 #include <thread>
 #include <vector>
 
@@ -45,9 +50,9 @@ TEST(Steering, TheFilmOfAFrameCanBeSeenInMidRender) {
 /// A farm with a frame of which some units are there, and no more come.
 class FilmInWork : public ::testing::Test {
  protected:
-  void start() {
+  void start(const std::string& document = FarmWorld::document(1)) {
     world.start();
-    job = world.submit(1);
+    job = world.submit_text(document);
     ScriptedWorker::Script script = world.script();
     script.meddle = [this](ScriptedWorker&, const v1::LeasedUnit&) { return ++units_ <= 5; };
     worker_ = std::make_unique<ScriptedWorker>(world.address, script);
@@ -115,6 +120,38 @@ TEST_F(FilmInWork, ThatIsTooLargeIsNotCopied) {
   world.start();
   EXPECT_TRUE(eventually([&] { return ask().ok(); }));
 }
+
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+/// Lets the process have `more` bytes of address space than it has.
+void limit_memory(uint64_t more) {
+  std::ifstream statm("/proc/self/statm");
+  uint64_t pages = 0;
+  statm >> pages;
+  rlimit limit{};
+  ::getrlimit(RLIMIT_AS, &limit);
+  limit.rlim_cur = pages * static_cast<uint64_t>(::sysconf(_SC_PAGESIZE)) + more;
+  ::setrlimit(RLIMIT_AS, &limit);
+}
+
+TEST_F(FilmInWork, ThatFindsNoMemoryEndsNoCoordinator) {
+  std::string large = FarmWorld::document(1);
+  const std::string size = "[80, 48]";
+  start(large.replace(large.find(size), size.size(), "[1920, 1080]"));
+  const auto copy = [&] {
+    std::promise<grpc::Status> copied;
+    const grpc::Status asked = world.controller->queries().film_alone(
+        job, 1,
+        [&](const grpc::Status& status, const auto&, const auto&) { copied.set_value(status); });
+    return asked.ok() ? copied.get_future().get() : asked;
+  };
+  limit_memory(uint64_t{16} << 20U);
+  const grpc::Status without = copy();
+  limit_memory(uint64_t{1} << 36U);
+  EXPECT_EQ(without.error_code(), grpc::StatusCode::RESOURCE_EXHAUSTED);
+  EXPECT_NE(without.error_message().find("no memory"), std::string::npos);
+  EXPECT_TRUE(copy().ok());
+}
+#endif
 
 TEST(FilmCopies, TakeTogetherWhatTheyMay) {
   FilmCopies copies(100);

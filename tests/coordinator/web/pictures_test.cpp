@@ -54,7 +54,7 @@ class UnreadPictures : public ::testing::Test {
       if (finished && world_.json(path)["job"]["state"] != "done") return false;
       return world_.client->get(path + "/frames/1/picture").status == 200;
     }));
-    api_.emplace(*world_.farm.controller, held_);
+    api_.emplace(*world_.farm.controller, held_, longest_turn_);
     api_->add_routes(router_);
   }
 
@@ -76,6 +76,38 @@ class UnreadPictures : public ::testing::Test {
     auto coming = reply->get_future();
     ask(who, width, [reply](WebReply made) { reply->set_value(std::move(made)); });
     return coming.get();
+  }
+
+  /// Returns when all that this one has asked for is answered, or waits for a turn of its frame.
+  void await_asked(const std::string& who) const {
+    std::promise<void> answered;
+    ask(who, "999", 16, [&](const WebReply& reply) {
+      EXPECT_EQ(reply.status, 404U);
+      answered.set_value();
+    });
+    answered.get_future().wait();
+  }
+
+  /// Of more jobs, of whose frame there is a picture.
+  std::string another_job(const std::string& document = FarmWorld::document(1)) {
+    std::string job = std::to_string(world_.farm.submit_text(document));
+    EXPECT_TRUE(eventually([&] {
+      return world_.client->get("/api/v1/jobs/" + job + "/frames/1/picture").status == 200;
+    }));
+    return job;
+  }
+  /// Of an ended job.
+  std::string another_finished_job() {
+    const uint64_t job = world_.farm.submit(1);
+    EXPECT_TRUE(world_.farm.wait_for(job, v1::JOB_STATE_DONE));
+    return std::to_string(job);
+  }
+
+  /// A copy of the film of a job's frame, which `then` gets by the thread that makes copies of it.
+  void copy_film(const std::string& job, JobQueries::FilmTaker then) const {
+    const grpc::Status held =
+        world_.farm.controller->queries().film_alone(std::stoull(job), 1, std::move(then));
+    ASSERT_TRUE(held.ok()) << held.error_message();
   }
 
   /// The world's own server may hold the memory of what it has just answered for a moment more.
@@ -111,6 +143,7 @@ class UnreadPictures : public ::testing::Test {
   std::optional<ScriptedWorker> worker_;
   const std::shared_ptr<farm::ByteBudget> held_ =
       std::make_shared<farm::ByteBudget>(kMost, kMostOfOne);
+  std::chrono::milliseconds longest_turn_ = PicturesApi::kLongestTurn;
   Router router_;
   std::optional<PicturesApi> api_;
 };
@@ -305,6 +338,189 @@ TEST_F(UnreadPictures, WhatIsAskedForWhileOthersAreSentComesLater) {
   ASSERT_EQ(bob.wait_for(20s), std::future_status::ready);
   EXPECT_EQ(bob.get(), 200U);
   EXPECT_EQ(answer_to("ada", 31).status, 200);
+}
+
+/// A frame has its turn by whoever asks for it, not by who has asked first, and for much besides.
+TEST_F(UnreadPictures, WhoAsksForAllFramesFirstKeepsNobodyFromOne) {
+  start(true);
+  const std::string second = another_finished_job();
+  std::promise<void> go;
+  const std::shared_future<void> gone(go.get_future());
+  std::promise<void> begun;
+  std::promise<unsigned> later;
+  ask("ada", 16, [&](const WebReply&) {
+    begun.set_value();
+    gone.wait();
+  });
+  begun.get_future().wait();
+  ask("ada", second, 16, [&](const WebReply& reply) { later.set_value(reply.status); });
+  await_asked("ada");
+  std::promise<unsigned> bobs;
+  ask("bob", second, 17, [&](const WebReply& reply) { bobs.set_value(reply.status); });
+  auto bob = bobs.get_future();
+  const bool served = bob.wait_for(20s) == std::future_status::ready;
+  go.set_value();
+  ASSERT_TRUE(served) << "ada's first frame is not over";
+  EXPECT_EQ(bob.get(), 200U);
+  EXPECT_EQ(later.get_future().get(), 200U);
+}
+
+/// Of a turn that has lasted for long the rest comes after those for whom less time was spent.
+TEST_F(UnreadPictures, ALongTurnGivesWayBetweenTwoPictures) {
+  longest_turn_ = 0ms;
+  start(false);
+  const std::string second = another_job();
+  const std::string third = another_job();
+  std::vector<std::promise<void>> go(2);
+  for (size_t i = 0; i < go.size(); ++i) {
+    copy_film(i == 0 ? job_ : second, [gone = std::shared_future<void>(go[i].get_future())](
+                                          const auto&...) { gone.wait(); });
+  }
+  std::mutex mutex;
+  std::vector<std::string> served;
+  const auto note = [&](const std::string& who) {
+    return [&, who](const WebReply& reply) {
+      EXPECT_EQ(reply.status, 200U);
+      const std::lock_guard lock(mutex);
+      served.push_back(who);
+    };
+  };
+  const auto count = [&] {
+    const std::lock_guard lock(mutex);
+    return served.size();
+  };
+  // Where two films are in work, bob has to wait until one of them is over.
+  ask("carl", second, 16, note("carl"));
+  await_asked("carl");
+  for (int i = 0; i < 4; ++i) {
+    ask("ada", job_, 16 + i, [&, noted = note("ada")](const WebReply& reply) {
+      const bool first = count() == 0;
+      noted(reply);
+      if (!first) return;
+      ask("bob", third, 16, note("bob"));
+      await_asked("bob");
+    });
+  }
+  await_asked("ada");
+  go[0].set_value();
+  EXPECT_TRUE(eventually([&] { return count() == 5; }));
+  go[1].set_value();
+  EXPECT_TRUE(eventually([&] { return count() == 6; }));
+  EXPECT_EQ(served, (std::vector<std::string>{"ada", "bob", "ada", "ada", "ada", "carl"}));
+}
+
+/// What has found no memory waits for its caller's share, as all else does.
+TEST_F(UnreadPictures, WhatFindsNoMemoryIsNotBeforeEverybody) {
+  world_.farm.options.film_memory = uint64_t{16} << 20U;
+  start(false);
+  const std::string second = another_job();
+  std::string smaller = FarmWorld::document(1);
+  const std::string size = "[80, 48]";
+  const std::string small =
+      another_job(smaller.replace(smaller.find(size), size.size(), "[32, 24]"));
+  // All the room that copies of films may take, but for a small one.
+  std::vector<std::shared_ptr<const core::Film>> films;
+  for (bool full = false; !full;) {
+    std::promise<std::shared_ptr<const core::Film>> copied;
+    copy_film(small, [&](const grpc::Status&, const auto&, auto film) { copied.set_value(film); });
+    films.push_back(copied.get_future().get());
+    full = films.back() == nullptr;
+  }
+  ASSERT_GT(films.size(), 3U);
+  films.resize(films.size() - 2);
+  std::promise<void> go;
+  const std::shared_future<void> gone(go.get_future());
+  copy_film(job_, [gone](const auto&...) { gone.wait(); });
+  std::vector<std::promise<unsigned>> answers(3);
+  const auto to = [&](size_t i) {
+    return [&answer = answers[i]](const WebReply& reply) { answer.set_value(reply.status); };
+  };
+  ask("carl", job_, 16, to(0));
+  await_asked("carl");
+  ask("ada", second, 16, to(1));
+  await_asked("ada");
+  ask("bob", small, 16, to(2));
+  auto bob = answers[2].get_future();
+  const bool served = bob.wait_for(20s) == std::future_status::ready;
+  films.clear();
+  go.set_value();
+  ASSERT_TRUE(served) << "ada's, for which there is no memory, is before him";
+  EXPECT_EQ(bob.get(), 200U);
+  EXPECT_EQ(answers[0].get_future().get(), 200U);
+  EXPECT_EQ(answers[1].get_future().get(), 200U);
+}
+
+/// However much waits when a turn is over, the next one comes.
+TEST_F(UnreadPictures, ATurnThatEndsInACrowdIsNotTheLast) {
+  start(true);
+  const std::string second = another_finished_job();
+  std::vector<std::promise<void>> begun(2);
+  std::vector<std::promise<void>> go(2);
+  const auto hold = [&](size_t i) {
+    return
+        [&begun = begun[i], gone = std::shared_future<void>(go[i].get_future())](const WebReply&) {
+          begun.set_value();
+          gone.wait();
+        };
+  };
+  ask("ada", 16, hold(0));
+  begun[0].get_future().wait();
+  std::promise<unsigned> later;
+  ask("ada", second, 16, [&](const WebReply& reply) { later.set_value(reply.status); });
+  await_asked("ada");
+  ask("dave", 16, hold(1));  // it is there
+  begun[1].get_future().wait();
+  std::atomic<int> answered{0};
+  std::atomic<int> refused{0};
+  for (const char* who : {"eve", "fred", "gwen"}) {
+    for (int i = 0; i < 500; ++i) {
+      ask(who, "999", 16,
+          [&](const WebReply& reply) { ++(reply.status == 404 ? answered : refused); });
+    }
+  }
+  EXPECT_EQ(refused, 500) << "nothing more may wait";
+  go[0].set_value();
+  EXPECT_TRUE(eventually([&] { return answered > 0; }));  // ada's turn is over
+  go[1].set_value();
+  EXPECT_TRUE(eventually([&] { return answered == 1000; }));
+  auto ada = later.get_future();
+  ASSERT_EQ(ada.wait_for(20s), std::future_status::ready);
+  EXPECT_EQ(ada.get(), 200U);
+}
+
+/// Who has more than he may costs others nothing of what is kept for them.
+TEST_F(UnreadPictures, WhatIsKeptForOthersStays) {
+  start(true);
+  const WebReply kept = answer_to("bob", 79);
+  ASSERT_EQ(kept.status, 200U);
+  std::vector<WebReply> unread;
+  while (unread.empty() || unread.back().status == 200) {
+    unread.push_back(answer_to("ada", 16 + static_cast<int>(unread.size())));
+  }
+  EXPECT_EQ(unread.back().status, 503U);
+  EXPECT_EQ(answer_to("bob", 79).text, kept.text);
+}
+
+/// An earlier life's picture is none of this one's, though its frames are counted anew.
+TEST_F(UnreadPictures, TheTagOfAJobThatBeganAnewIsAnother) {
+  start(false);
+  worker_.reset();
+  const uint64_t job = world_.farm.submit(1);
+  const auto tag = [&] {
+    FrameNow now;
+    (void)world_.farm.controller->queries().frame_now(job, 1, now);
+    return now.tag;
+  };
+  const std::string first = tag();
+  EXPECT_NE(first, "");
+  v1::JobResponse now;
+  const auto call = world_.farm.context();
+  ASSERT_TRUE(world_.farm.jobs->Cancel(call.get(), about(job), &now).ok());
+  ASSERT_TRUE(world_.farm.wait_for(job, v1::JOB_STATE_CANCELLED));
+  const auto again = world_.farm.context();
+  ASSERT_TRUE(world_.farm.jobs->Retry(again.get(), about(job), &now).ok());
+  ASSERT_TRUE(eventually([&] { return !tag().empty(); }));
+  EXPECT_NE(tag(), first);
 }
 
 }  // namespace
