@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
@@ -123,8 +122,10 @@ Result<StrandList> read_strands(std::span<const char> bytes, size_t room) {
     list.colors.assign(header.points, {header.color[0], header.color[1], header.color[2]});
   }
   for (const Vec3& c : list.colors) {
-    if (!(c.x >= 0.0F && c.y >= 0.0F && c.z >= 0.0F && std::isfinite(c.x + c.y + c.z))) {
-      return Error{"one of its colours is below 0 or not finite"};
+    for (int k = 0; k < 3; ++k) {
+      if (c[k] >= 0.0F && c[k] <= 1.0F) continue;
+      return Error{fmt::format("one of its colours is {}, expected 0 to 1{}", c[k],
+                               c[k] > 1.0F ? "; if they go from 0 to 255, divide by 255" : "")};
     }
   }
   return list;

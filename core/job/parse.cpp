@@ -13,8 +13,7 @@ Job parse_job(const std::string& text, const std::string& file_name, AssetResolv
               Diagnostics& diagnostics) {
   Job job;
   job.file = file_name;
-  job.name = std::filesystem::path(file_name).stem().string();
-  if (!is_valid_name(job.name)) job.name = "job";
+  job.name = valid_name(std::filesystem::path(file_name).stem().string());
   JobTree tree = load_job_tree(text, file_name, assets, diagnostics);
   if (tree.root == nullptr) return job;
   job.includes = tree.includes;

@@ -31,11 +31,16 @@ void check_keys(MapReader& reader, ObjectDesc& object) {
   }
   if (shape == "mesh" || !reader.has("displacement")) return;
   reader.leave_to_others("displacement");
-  reader.complain(reader.where_of("displacement"),
-                  fmt::format("{} is {} {}, but displacement moves the triangles of a mesh{}",
-                              reader.what(), shape == "instance" ? "an" : "a", shape,
-                              is_shape ? ": write the shape as a file and give it with mesh"
-                                       : ": give it to the meshes in it"));
+  reader.complain(
+      reader.where_of("displacement"),
+      fmt::format("{} is {} {}, but displacement moves the triangles of a mesh{}", reader.what(),
+                  shape == "instance" ? "an"
+                  : shape == "curves" ? "of"
+                                      : "a",
+                  shape,
+                  is_shape            ? ": write the shape as a file and give it with mesh"
+                  : shape == "curves" ? ", which they are not"
+                                      : ": give it to the meshes in it"));
 }
 
 namespace {

@@ -143,17 +143,41 @@ bool parse_number(std::string_view text, double& value) {
          std::isfinite(value);
 }
 
+namespace {
+
+constexpr size_t kLongestName = 100;
+
+/// What a name may begin with.
+bool begins_name(char c) {
+  return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_' ||
+         static_cast<unsigned char>(c) >= 0x80;
+}
+
+bool is_of_name(char c) { return begins_name(c) || c == '-' || c == '.' || c == ' '; }
+
+}  // namespace
+
 bool is_valid_name(std::string_view name) {
-  if (name.empty() || name.size() > 100 || name.back() == ' ') return false;
-  const auto letter = [](char c) {
-    const auto byte = static_cast<unsigned char>(c);
-    return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_' ||
-           byte >= 0x80;
-  };
-  for (const char c : name) {
-    if (!letter(c) && c != '-' && c != '.' && c != ' ') return false;
+  return !name.empty() && name.size() <= kLongestName && name.back() != ' ' &&
+         begins_name(name.front()) && std::all_of(name.begin(), name.end(), is_of_name);
+}
+
+std::string valid_name(std::string_view text) {
+  std::string name(text.substr(0, kLongestName));
+  // Not in the middle of a letter of several bytes.
+  for (size_t i = name.size(); text.size() > name.size() && i > 0; --i) {
+    const bool continues = (static_cast<unsigned char>(text[i]) & 0xC0U) == 0x80U;
+    if (!continues) {
+      name.resize(i);
+      break;
+    }
   }
-  return letter(name.front());
+  std::replace_if(
+      name.begin(), name.end(), [](char c) { return !is_of_name(c); }, '_');
+  while (!name.empty() && name.back() == ' ') name.pop_back();
+  if (name.empty()) return "job";
+  if (!begins_name(name.front())) name.front() = '_';
+  return name;
 }
 
 bool read_component(const ValueSite& site, const YamlNode& node, float& constant,

@@ -30,6 +30,10 @@ bool looks_like_color(std::string_view text);
 /// or '_'.
 bool is_valid_name(std::string_view name);
 
+/// The name that is nearest to `text`: '_' for what names cannot have, so that "shot (1)" and "shot
+/// (2)" stay two; "job" where nothing is left.
+std::string valid_name(std::string_view text);
+
 bool read_number(const ValueSite& site, const YamlNode& node, float& target);
 bool read_integer(const ValueSite& site, const YamlNode& node, int64_t low, int64_t high,
                   int64_t& target);

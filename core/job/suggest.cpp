@@ -43,7 +43,9 @@ constexpr auto kOtherWords = std::to_array<OtherWord>({
     {"circle", "disk"},
     {"mesh", "sphere", "; a mesh is told by its file: 'mesh: body.ply'"},
     // lights
-    {"area", "point", "; a lamp with an area is an object with 'emit'"},
+    {"area", "point",
+     "; a lamp with an area is an object with 'emit' (a rectangle shines upwards until it is "
+     "turned)"},
     {"directional", "sun"},
     {"distant", "sun"},
     {"omni", "point"},

@@ -80,9 +80,13 @@ class Strand {
 
   Widths width() const {
     Widths widths{};
-    if (lua_getfield(state_, -1, "width") == LUA_TNUMBER) {
+    const int type = lua_getfield(state_, -1, "width");
+    if (type == LUA_TNUMBER) {
       lua_pushvalue(state_, -1);
       widths.root = widths.tip = number("width");
+    } else if (type != LUA_TTABLE) {
+      luaL_error(state_, "width of strand %I is a %s, expected a number or {root, tip}", index_,
+                 lua_typename(state_, type));
     } else {
       const auto both = numbers<2>("width");
       widths = {both[0], both[1]};
@@ -123,8 +127,11 @@ class Strand {
     }
     if (given) {
       const auto [r, g, b] = numbers<3>("color");
-      if (r < 0.0F || g < 0.0F || b < 0.0F) {
-        luaL_error(state_, "color of strand %I is below 0", index_);
+      for (const float part : {r, g, b}) {
+        if (part >= 0.0F && part <= 1.0F) continue;
+        luaL_error(state_, "color of strand %I has %f, expected 0 to 1%s", index_,
+                   static_cast<double>(part),
+                   part > 1.0F ? "; if they go from 0 to 255, divide by 255" : "");
       }
       list.colors.insert(list.colors.end(), count, Vec3(r, g, b));
     }

@@ -207,6 +207,8 @@ def units(key: Key, value: Any) -> Any:
 
 def file(key: Key, value: Any) -> Any:
     is_array = hasattr(value, "dtype") and hasattr(value, "ndim")
+    if is_array and key.name == "curves":
+        raise refuse("hyades.Strands(points, widths) or a path")
     if isinstance(value, (str, os.PathLike)) or is_array or hasattr(value, "encode"):
         return value
     raise refuse("a path, an array of numpy, a MeshData, Places, Strands or Picture")

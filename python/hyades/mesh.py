@@ -109,6 +109,8 @@ class Strands:
                 raise ValueError(f"a strand has {len(strand)} points, expected 2 to 65536")
         self.widths = [self._widths(widths, i) for i in range(len(self.points))]
         self.colors = _columns("colors", colors, len(self.points), (3,))
+        if self.colors is not None and not ((self.colors >= 0) & (self.colors <= 1)).all():
+            raise ValueError("colors are not from 0 to 1; if they go from 0 to 255, divide by 255")
 
     def _widths(self, widths: Any, index: int) -> Any:
         count = len(self.points[index])

@@ -317,11 +317,13 @@ TEST(LuaStrands, WrongOnesAreToldByNumber) {
   EXPECT_THAT(error("{points = {{0, 0, 0}, {0, 1}}, width = 1}"),
               HasSubstr("points of strand 1 has a table of others, expected 3 numbers"));
   EXPECT_THAT(error("{points = {{0, 0, 0}, {0, 1, 0}}}"),
-              HasSubstr("width of strand 1 has a nil, expected 2 numbers"));
+              HasSubstr("width of strand 1 is a nil, expected a number or {root, tip}"));
   EXPECT_THAT(error("{points = {{0, 0, 0}, {0, 1, 0}}, width = -1}"), HasSubstr("is below 0"));
   EXPECT_THAT(error("{point = {}}"), HasSubstr("strand 1 has the key 'point', expected points,"));
   EXPECT_THAT(error(good + ", {points = {{0, 0, 0}, {0, 1, 0}}, width = 1, color = {1, 1, 1}}"),
               HasSubstr("strand 2 has a color, but those before have none"));
+  EXPECT_THAT(error("{points = {{0, 0, 0}, {0, 1, 0}}, width = 1, color = {255, 0, 0}}"),
+              HasSubstr("color of strand 1 has 255.0, expected 0 to 1; if they go from 0 to 255"));
   EXPECT_THAT(error(""), HasSubstr("a list without strands"));
 }
 

@@ -119,6 +119,7 @@ class Meshes(unittest.TestCase):
             lambda: hyades.Strands([corner], -0.1),
             lambda: hyades.Strands([corner], [[0.1, 0.1]]),
             lambda: hyades.Strands([corner], 0.1, colors=corner),
+            lambda: hyades.Strands([corner], 0.1, colors=[[255, 0, 0]]),
         ):
             self.assertRaises(ValueError, wrong)
 

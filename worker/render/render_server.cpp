@@ -249,11 +249,23 @@ void RenderServer::progress_loop() {
   }
 }
 
+namespace {
+
+/// Mistakes of a job are a line each; who is told shows one.
+std::string in_one_line(std::string text) {
+  while (text.ends_with('\n')) text.pop_back();
+  for (size_t end = 0; (end = text.find('\n', end)) != std::string::npos;)
+    text.replace(end, 1, "; ");
+  return text;
+}
+
+}  // namespace
+
 void RenderServer::say_failed(uint64_t token, const std::string& reason,
                               const std::set<std::string>& damaged) {
   pipe::FromRenderer message;
   message.mutable_failed()->set_token(token);
-  message.mutable_failed()->set_reason(farm::wire_text(reason));
+  message.mutable_failed()->set_reason(farm::wire_text(in_one_line(reason)));
   for (const std::string& name : damaged) message.mutable_failed()->add_damaged(name);
   send(message);
 }

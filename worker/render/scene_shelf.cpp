@@ -86,7 +86,10 @@ core::Result<std::shared_ptr<SceneShelf::LoadedJob>> SceneShelf::read(
   auto loaded = std::make_shared<LoadedJob>();
   loaded->files = std::make_unique<farm::ManifestResolver>(manifest, store_);
   auto job = farm::read_job(spec.document(), spec.document(), *loaded->files);
-  if (!job) return job.error();
+  if (!job) {
+    // It has been read before it was taken up.
+    return job.error().in("this worker cannot read the job; is it older than the coordinator?");
+  }
   loaded->job = std::move(job->job);
   if (spec.samples() > 0) loaded->job.sampling.samples = spec.samples();
   loaded->layers = core::needed_layers(loaded->job);

@@ -27,8 +27,8 @@ class JobKeys(Described):
     include: File | Sequence[File] | None = key("files")
     """See Several files. Default: none."""
     name: str | None = key("text")
-    """What the job is called; without it, the file's name. Part of default outputs, never of the
-    picture. Default: none."""
+    """What the job is called; without it, the file's name, with `_` for what names cannot have.
+    Part of default outputs, never of the picture. Default: none."""
     units: str | float = key(
         "units", "m", low=1e-12, high=1000000000000, names=("mm", "cm", "m", "km", "in", "ft"),
     )

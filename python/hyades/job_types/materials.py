@@ -444,7 +444,7 @@ class Hair(Material):
     eumelanin: Number = key("number, animated", 1.3, low=0)
     """Pigment of brown and black hair: 0.3 is blond, 1.3 brown, 8 black. Range: >= 0."""
     pheomelanin: Number = key("number, animated", 0, low=0)
-    """Pigment of red hair. Range: >= 0."""
+    """Pigment of red hair, beside an `eumelanin` of 0.3 or less. Range: >= 0."""
     roughness: NumberInput = key("number or texture", 0.3, low=0, high=1)
     """How widely light is spread along the strand. Range: 0 to 1."""
     radial_roughness: NumberInput = key("number or texture", 0.3, low=0, high=1)
@@ -452,8 +452,8 @@ class Hair(Material):
     ior: Number = key("number, animated", 1.55, low=1, high=100)
     """Index of refraction. Range: 1 to 100."""
     tilt: Number = key("number, animated", 2, low=-45, high=45)
-    """How far the scales stand off, towards the tip: it moves the highlight towards the root. Unit:
-    degrees. Range: -45 to 45."""
+    """How far the scales stand off at their ends towards the tip, which moves the highlight towards
+    the root. Unit: degrees. Range: -45 to 45."""
     opacity: NumberInput = key("number or texture", 1, low=0, high=1)
     """How much of it is there: leaves from an image of a leaf, fading smoke. The rest of the light
     passes straight on, to the camera and in shadows, as if nothing were there, and counts no event.

@@ -28,9 +28,10 @@ def shader(**values):
     if hasattr(node, "model"):
         node.model = "CHIANG"
     node.parametrization = values.pop("kind", "MELANIN")
-    node.inputs["Random Color"].default_value = 0.0
+    inputs = {socket.name: socket for socket in node.inputs}  # Blender 4 does not find hidden ones by name
+    inputs["Random Color"].default_value = 0.0
     for name, value in values.items():
-        socket = node.inputs[name.replace("_", " ")]
+        socket = inputs[name.replace("_", " ")]
         socket.default_value = (*value, 1.0)[: len(socket.default_value)] if isinstance(value, tuple) else value
     return made
 

@@ -80,6 +80,13 @@ TEST_F(ReadHair, TellsWhatIsWrong) {
               "a.hair: the file is too short for 3 strands of 9 points")
         << size;
   }
+  StrandList bright = three_strands();
+  bright.colors[4].y = 255.0F;
+  const Bytes codes = hair_bytes(bright);
+  EXPECT_EQ(
+      complaint({codes.chars(), codes.size()}),
+      "a.hair: one of its colours is 255, expected 0 to 1; if they go from 0 to 255, divide by "
+      "255");
   std::string no_points = good();
   no_points[12] = 1;
   EXPECT_EQ(complaint(no_points), "a.hair: it has no points");

@@ -6,6 +6,25 @@
 namespace hyades::core {
 namespace {
 
+// Jobs without a name are called like their files, and two files never alike.
+TEST(ParseJob, IsCalledLikeItsFile) {
+  const auto name_of = [](const std::string& file) {
+    MemoryAssets assets;
+    Diagnostics diagnostics;
+    return parse_job("hyades: 1\n", file, assets, diagnostics).name;
+  };
+  EXPECT_EQ(name_of("a/shot 1.yaml"), "shot 1");
+  EXPECT_EQ(name_of("shot (1).yaml"), "shot _1_");
+  EXPECT_EQ(name_of("shot (2).yaml"), "shot _2_");
+  EXPECT_EQ(name_of("it's.yaml"), "it_s");
+  EXPECT_EQ(name_of("-x.yaml"), "_x");
+  EXPECT_EQ(name_of("(.yaml"), "_");
+  EXPECT_EQ(name_of("trail .yaml"), "trail");
+  EXPECT_EQ(name_of(std::string(120, 'a') + ".yaml"), std::string(100, 'a'));
+  EXPECT_EQ(name_of(std::string(99, 'a') + "\u00e4b.yaml"), std::string(99, 'a'));
+  EXPECT_EQ(name_of(" .yaml"), "job");
+}
+
 TEST(ParseJob, ReadsTheExampleOfTheDesign) {
   MemoryAssets assets;
   assets.add("meshes/flask.ply", "ply");
