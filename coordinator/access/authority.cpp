@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cstddef>
+#include <optional>
 #include <string_view>
 #include <utility>
 
@@ -13,7 +14,6 @@
 #include <openssl/crypto.h>
 
 #include "coordinator/access/address.h"
-#include "coordinator/access/peer_user.h"
 #include "coordinator/access/token.h"
 #include "core/base/random_id.h"
 #include "core/base/wall_clock.h"
@@ -50,6 +50,15 @@ bool same(std::string_view a, std::string_view b) {
 std::string date(int64_t ms) {
   return fmt::format("{:%Y-%m-%d %H:%M} UTC",
                      std::chrono::system_clock::time_point(std::chrono::milliseconds(ms)));
+}
+
+/// Whether the connection from `peer` is of the user who has started this process, or root's.
+bool is_owners(const std::string& peer, const OwnEnd& own_end) {
+  const std::string own = own_end ? own_end() : std::string();
+  if (own.empty()) return false;
+  const std::optional<uid_t> user = user_of_peer(peer, own);
+  // Else it may have been another's, who has come from the same port since.
+  return user && (*user == ::geteuid() || *user == 0) && own_end() == own;
 }
 
 }  // namespace
@@ -122,9 +131,9 @@ std::string Authority::unguarded() const {
                 : "plain text and no token (--insecure): whoever reaches it may read and steer it";
 }
 
-grpc::Status Authority::admit(std::string_view authorization, Caller& caller) {
+grpc::Status Authority::admit(std::string_view authorization, Caller& caller, const OwnEnd& own) {
   // Who has a token of another farm may come in as all others.
-  if (!guarded()) return admit_without_token(caller);
+  if (!guarded()) return admit_without_token(caller, own);
   if (authorization.empty()) {
     return stranger(
         "this coordinator wants a token with every call: an admin makes one with 'hyades token "
@@ -153,28 +162,13 @@ grpc::Status Authority::admit(std::string_view authorization, Caller& caller) {
   return right ? admit_known(*id, caller) : refuse_unknown(caller.address);
 }
 
-grpc::Status Authority::admit_without_token(Caller& caller) {
-  if (options_.owner_only) {
-    std::set<std::string> ours;
-    {
-      const core::MutexLock lock(mutex_);
-      ours = own_addresses_;
-    }
-    const std::set<uid_t> users = users_of_peer(caller.address, ours);
-    const bool known = std::all_of(users.begin(), users.end(),
-                                   [](uid_t user) { return user == ::geteuid() || user == 0; });
-    if (users.empty() || !known) {
-      return stranger(
-          "this coordinator has no tokens and serves the user who started it alone: ask him for a "
-          "token ('hyades token create'), or to start it with --insecure");
-    }
+grpc::Status Authority::admit_without_token(Caller& caller, const OwnEnd& own) {
+  if (options_.owner_only && !is_owners(caller.address, own)) {
+    return stranger(
+        "this coordinator has no tokens and serves the user who started it alone: ask him for a "
+        "token ('hyades token create'), or to start it with --insecure");
   }
   return admit_known({}, caller);
-}
-
-void Authority::listens_at(const std::string& address) {
-  const core::MutexLock lock(mutex_);
-  own_addresses_.insert(address);
 }
 
 grpc::Status Authority::refuse_unknown(const std::string& address) {

@@ -5,7 +5,6 @@
 #include <functional>
 #include <map>
 #include <memory>
-#include <set>
 #include <string>
 #include <string_view>
 #include <thread>
@@ -15,6 +14,7 @@
 
 #include "coordinator/access/audit_log.h"
 #include "coordinator/access/caller.h"
+#include "coordinator/access/peer_user.h"
 #include "coordinator/access/worker_credential.h"
 #include "coordinator/job_store/job_store.h"
 #include "core/base/mutex.h"
@@ -74,18 +74,16 @@ class Authority {
   /// How strangers may listen or act; empty: they may not.
   std::string unguarded() const;
 
-  /// Callers come to this address of ours, as address_text() has it.
-  void listens_at(const std::string& address);
-
   /// Where it is kept who did what; null where it is not.
   AuditLog* audit() { return audit_.get(); }
 
   /// Admits who shows `authorization` ("Bearer TOKEN"; empty: nothing) from the address that
   /// `caller` has: OK with the rest of `caller`, or UNAUTHENTICATED. Where no token is needed
-  /// everybody is an admin without a name. Whose neighbourhood has shown too many tokens that are
-  /// none is told RESOURCE_EXHAUSTED instead, and when to come again; a token that is one is always
-  /// taken.
-  grpc::Status admit(std::string_view authorization, Caller& caller);
+  /// everybody is an admin without a name; with `owner_only` it is told by the connection, of which
+  /// `own` tells our end (none: nobody comes in). Whose neighbourhood has shown too many tokens
+  /// that are none is told RESOURCE_EXHAUSTED instead, and when to come again; a token that is one
+  /// is always taken.
+  grpc::Status admit(std::string_view authorization, Caller& caller, const OwnEnd& own = {});
   /// Admits who has shown the token of this id before: OK with all of `caller` but the address, or
   /// UNAUTHENTICATED where the token is of no use any more.
   grpc::Status admit_known(const std::string& token_id, Caller& caller);
@@ -133,7 +131,7 @@ class Authority {
 
   Authority(JobStore& store, Options options);
   grpc::Status refuse_unknown(const std::string& address);
-  grpc::Status admit_without_token(Caller& caller);
+  grpc::Status admit_without_token(Caller& caller, const OwnEnd& own);
   void take_in(const StoredToken& row) HYADES_REQUIRES(mutex_);
   grpc::Status check(const std::string& token_id, int64_t now_ms) const HYADES_REQUIRES(mutex_);
   core::Status make_room(int64_t now_ms);
@@ -147,7 +145,6 @@ class Authority {
   std::unique_ptr<AuditLog> audit_;
   mutable core::Mutex mutex_;
   std::map<std::string, Known> tokens_ HYADES_GUARDED_BY(mutex_);
-  std::set<std::string> own_addresses_ HYADES_GUARDED_BY(mutex_);
   bool stop_ HYADES_GUARDED_BY(mutex_) = false;
   core::CondVar wake_;
 

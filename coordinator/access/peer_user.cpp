@@ -4,6 +4,8 @@
 #include <linux/inet_diag.h>
 #include <linux/netlink.h>
 #include <linux/sock_diag.h>
+#include <linux/tcp.h>
+#include <net/if.h>
 #include <netinet/in.h>
 #include <sys/socket.h>
 
@@ -13,7 +15,6 @@
 #include <cstdint>
 #include <cstring>
 #include <fstream>
-#include <optional>
 #include <sstream>
 #include <system_error>
 
@@ -66,7 +67,7 @@ Question question_about(int family) {
   return question;
 }
 
-/// The kernel's answer; nothing where it gives none.
+/// The kernel's answer, what it does not fill being zero; nothing where it gives none.
 std::optional<Told> ask_kernel(const Question& question) {
   const core::Descriptor kernel(::socket(AF_NETLINK, SOCK_RAW | SOCK_CLOEXEC, NETLINK_SOCK_DIAG));
   if (!kernel.valid() || ::send(kernel.get(), &question, sizeof question, 0) < 0) {
@@ -75,6 +76,13 @@ std::optional<Told> ask_kernel(const Question& question) {
   Told told;
   const ssize_t got = ::recv(kernel.get(), &told, sizeof told, MSG_DONTWAIT);
   return got < static_cast<ssize_t>(sizeof told.head) ? std::nullopt : std::optional(told);
+}
+
+/// The kernel's answer to a list of connections, of which it has none to show.
+int list_error(const Told& told) {
+  int error = 0;
+  std::memcpy(&error, &told.found, sizeof error);
+  return error;
 }
 
 /// Who holds the end at `peer` of the connection from there to `own`; nothing where the kernel
@@ -86,6 +94,10 @@ std::optional<uid_t> holder(const Place& peer, const Place& own) {
   question.wanted.id.idiag_dport = own.port;
   std::memcpy(question.wanted.id.idiag_src, peer.host.data(), sizeof peer.host);
   std::memcpy(question.wanted.id.idiag_dst, own.host.data(), sizeof own.host);
+  // All that this machine says to itself comes by there; of sockets that are bound to a device
+  // those to another are not found, and without a device none.
+  static const unsigned kLoopback = ::if_nametoindex("lo");
+  question.wanted.id.idiag_if = kLoopback;
   for (uint32_t& any : question.wanted.id.idiag_cookie) any = INET_DIAG_NOCOOKIE;
   const auto told = ask_kernel(question);
   if (!told || told->head.nlmsg_type != SOCK_DIAG_BY_FAMILY ||
@@ -96,12 +108,14 @@ std::optional<uid_t> holder(const Place& peer, const Place& own) {
 }
 
 /// Whether the kernel can tell at all: one that was built without says of each connection that
-/// there is none. A list of those in no state ends at once where it can.
+/// there is none. A list of those in no state ends at once where it can, and where it only knows
+/// other protocols than TCP it ends with an error.
 bool kernel_can_tell(int family) {
   Question question = question_about(family);
   question.head.nlmsg_flags |= NLM_F_DUMP;
   const auto told = ask_kernel(question);
-  return told && told->head.nlmsg_type == NLMSG_DONE;
+  return told && told->head.nlmsg_type == NLMSG_DONE &&
+         told->head.nlmsg_len >= sizeof told->head + sizeof(int) && list_error(*told) >= 0;
 }
 
 /// Of "0100007F:1F90": words of 32 bits in the processor's order, and the port as a number.
@@ -127,9 +141,8 @@ std::string text_of(const Place& place) {
   return address_text(host.data(), std::to_string(ntohs(place.port)));
 }
 
-/// Of connections to any of our addresses.
-std::set<uid_t> read_table(const std::string& peer, const std::set<in_port_t>& ports) {
-  std::set<uid_t> users;
+/// Who holds it by the table of all connections.
+std::optional<uid_t> read_table(const std::string& peer, const std::string& own) {
   for (const char* path : {"/proc/net/tcp", "/proc/net/tcp6"}) {
     std::ifstream lines(path);
     std::string line;
@@ -143,30 +156,48 @@ std::set<uid_t> read_table(const std::string& peer, const std::set<in_port_t>& p
         continue;
       }
       if (state != "01") continue;  // established
-      const auto to = read_row(remote);
       const auto from = read_row(local);
-      if (from && to && ports.contains(to->port) && text_of(*from) == peer) users.insert(user);
+      const auto to = read_row(remote);
+      if (from && to && text_of(*from) == peer && text_of(*to) == own) return user;
     }
   }
-  return users;
+  return std::nullopt;
 }
 
 }  // namespace
 
-std::set<uid_t> users_of_peer(const std::string& peer, const std::set<std::string>& ours) {
+std::optional<uid_t> user_of_peer(const std::string& peer, const std::string& own) {
   const auto from = read_place(peer);
-  if (!from) return {};
-  std::set<uid_t> users;
-  std::set<in_port_t> ports;
-  for (const std::string& each : ours) {
-    const auto own = read_place(each);
-    if (!own) continue;
-    ports.insert(own->port);
-    if (own->family != from->family) continue;
-    if (const auto user = holder(*from, *own)) users.insert(*user);
-  }
+  const auto to = read_place(own);
+  if (!from || !to || from->family != to->family) return std::nullopt;
+  if (const auto user = holder(*from, *to)) return user;
   // Who is not found has gone mostly, and hears no answer: nobody shall wait for that.
-  return !users.empty() || kernel_can_tell(from->family) ? users : read_table(peer, ports);
+  return kernel_can_tell(from->family) ? std::nullopt : read_table(peer, own);
+}
+
+std::string own_end(int socket) {
+  tcp_info info{};
+  socklen_t size = sizeof info;
+  if (::getsockopt(socket, IPPROTO_TCP, TCP_INFO, &info, &size) != 0 ||
+      info.tcpi_state != kEstablished) {
+    return {};
+  }
+  sockaddr_storage own{};
+  size = sizeof own;
+  if (::getsockname(socket, reinterpret_cast<sockaddr*>(&own), &size) != 0) return {};
+  Place place{own.ss_family, {}, 0};
+  if (own.ss_family == AF_INET) {
+    const auto& four = reinterpret_cast<const sockaddr_in&>(own);
+    std::memcpy(place.host.data(), &four.sin_addr, sizeof four.sin_addr);
+    place.port = four.sin_port;
+  } else if (own.ss_family == AF_INET6) {
+    const auto& six = reinterpret_cast<const sockaddr_in6&>(own);
+    std::memcpy(place.host.data(), &six.sin6_addr, sizeof six.sin6_addr);
+    place.port = six.sin6_port;
+  } else {
+    return {};
+  }
+  return text_of(place);
 }
 
 }  // namespace hyades::coordinator

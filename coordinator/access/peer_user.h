@@ -2,21 +2,30 @@
 
 #include <sys/types.h>
 
-#include <set>
+#include <functional>
+#include <optional>
 #include <string>
 
 namespace hyades::coordinator {
 
-/// The users whose processes hold the other end of TCP connections from `peer`, an address of this
-/// machine, to `ours`, at which we listen; all as address_text() has them. They are several where
-/// one user has taken the port of another for a connection to another of our addresses. None where
-/// there is no such connection, or it is closing: what nobody holds any more counts as root's.
+/// The user whose process holds the other end of the TCP connection from `peer`, an address of this
+/// machine, to `own`, that address of ours at which it came in; both as address_text() has them.
+/// Nothing where there is no such connection, or it is closing: what nobody holds any more counts
+/// as root's. It says nothing of other connections from there: to each address of ours another
+/// user's may come from the same port, so that `own` has to be this connection's (own_end()).
 ///
 /// The kernel is asked anew each time, for a port may be another user's at once. It finds one
-/// connection in microseconds (sock_diag(7)), if we name both ends: of those to a socket that
-/// listens at all addresses it finds none, but such a coordinator asks for tokens. Only where it
-/// cannot tell, because it was built without that, we read the table of all connections
+/// connection in microseconds (sock_diag(7)), as we name both ends. Only where it cannot tell,
+/// because it was built without that or nobody may ask, we read the table of all connections
 /// (/proc/net/tcp, proc_pid_net(5)), which takes milliseconds and more the more there are.
-std::set<uid_t> users_of_peer(const std::string& peer, const std::set<std::string>& ours);
+std::optional<uid_t> user_of_peer(const std::string& peer, const std::string& own);
+
+/// Our address that this accepted socket is at, as address_text() has it; empty once either side
+/// has ended the connection. Where it is there both before and after user_of_peer() was asked, that
+/// has spoken of this connection: the kernel has no other between the same two ends meanwhile.
+std::string own_end(int socket);
+
+/// own_end() of the connection by which somebody calls.
+using OwnEnd = std::function<std::string()>;
 
 }  // namespace hyades::coordinator

@@ -32,7 +32,7 @@ grpc::Status Admission::admit(const grpc::CallbackServerContext& context, const 
   const grpc::Status known = authority_.admit(
       shown == metadata.end() ? std::string_view()
                               : std::string_view(shown->second.data(), shown->second.size()),
-      caller);
+      caller, [&] { return own_end_(caller.address); });
   if (!known.ok()) {
     unknown_(caller.address);
     return known;

@@ -25,10 +25,14 @@ class Admission {
   /// Hears of an address from which a call has shown no token that is one.
   using Unknown = std::function<void(const std::string& address)>;
 
+  /// Our end of the connection by which calls come from an address, as own_end() has it.
+  using OwnEndTo = std::function<std::string(const std::string& address)>;
+
   /// `workers_show`: workers must have shown a certificate. `authority` outlives it.
-  Admission(Authority& authority, bool workers_show, Known known, Unknown unknown)
+  Admission(Authority& authority, bool workers_show, OwnEndTo own_end, Known known, Unknown unknown)
       : authority_(authority),
         workers_show_(workers_show),
+        own_end_(std::move(own_end)),
         known_(std::move(known)),
         unknown_(std::move(unknown)) {}
 
@@ -59,6 +63,7 @@ class Admission {
 
   Authority& authority_;
   const bool workers_show_;
+  const OwnEndTo own_end_;
   const Known known_;
   const Unknown unknown_;
 };

@@ -16,6 +16,7 @@
 #include <utility>
 
 #include "coordinator/access/address.h"
+#include "coordinator/access/peer_user.h"
 #include "coordinator/services/memory_trim.h"
 #include "coordinator/services/receive_bound.h"
 
@@ -149,6 +150,12 @@ void ConnectionGate::mark_unknown(const std::string& address) {
   if (++connection.calls < limits_.stranger_calls) return;
   drop(found->second);
   wake();
+}
+
+std::string ConnectionGate::own_end_to(const std::string& address) const {
+  const core::MutexLock lock(mutex_);
+  const auto found = by_address_.find(address);
+  return found == by_address_.end() ? "" : own_end(connections_.at(found->second).socket.get());
 }
 
 void ConnectionGate::note_begun(const std::string& address) {
@@ -289,7 +296,21 @@ void ConnectionGate::watch_listeners(bool watched) const {
   }
 }
 
+/// Whether calls of another connection from there, perhaps a stranger's, could be taken for those
+/// of a new one: it has just been inside, or is there still, at another address of ours.
+bool ConnectionGate::may_be_mistaken(const std::string& address) const {
+  if (const auto left = left_.find(address);
+      left != left_.end() && std::chrono::steady_clock::now() < left->second) {
+    return true;
+  }
+  const auto before = by_address_.find(address);
+  if (before == by_address_.end()) return false;
+  const Connection& connection = connections_.at(before->second);
+  return !connection.known || !own_end(connection.socket.get()).empty();
+}
+
 void ConnectionGate::take(core::Descriptor socket, std::string address) {
+  if (may_be_mistaken(address)) return;  // a client comes again, from another port
   Connection connection{.socket = std::move(socket), .address = std::move(address)};
   if (listening_.beginnings_are_kept) {
     // Else nobody could bound what this one sends; a client comes again.
@@ -302,7 +323,7 @@ void ConnectionGate::take(core::Descriptor socket, std::string address) {
   const Id id = next_id_++;
   if (!watch(poll_, EPOLL_CTL_ADD, connection.socket, EPOLLRDHUP | EPOLLET, id)) return;
   strangers_.come(id, neighbourhood_of(connection.address));
-  by_address_[connection.address] = id;  // one before it from that port has most likely just ended
+  by_address_[connection.address] = id;  // one before it from there was known, and is ending
   connections_.emplace(id, std::move(connection));
 }
 
@@ -335,6 +356,7 @@ int ConnectionGate::enter(Id id) {
     drop(id);
     return -1;
   }
+  connections_.at(id).entered = true;
   return socket;
 }
 
@@ -348,7 +370,11 @@ void ConnectionGate::drop(Id id) {
     forget_one_of(connection.token_id);
     if (!connection.machine.empty()) forget_one_of(connection.machine);
   }
-  strangers_.go(id, std::chrono::steady_clock::now());
+  const Time now = std::chrono::steady_clock::now();
+  strangers_.go(id, now);
+  if (connection.entered && !connection.known) {
+    left_[connection.address] = now + limits_.address_rest;
+  }
   const auto address = by_address_.find(connection.address);
   if (address != by_address_.end() && address->second == id) by_address_.erase(address);
   (void)::shutdown(connection.socket.get(), SHUT_RDWR);
@@ -365,6 +391,7 @@ void ConnectionGate::drop(Id id) {
 void ConnectionGate::look_at_strangers(Time now) {
   if (now < look_again_) return;
   look_again_ = now + limits_.stranger_pace;
+  std::erase_if(left_, [&](const auto& one) { return one.second <= now; });
   for (const Id id : strangers_.all_inside()) {
     Connection& connection = connections_.at(id);
     const uint64_t received = bytes_received(connection.socket);

@@ -49,6 +49,9 @@ class ConnectionGate {
     /// token as many as are free at most, so half of them, and then who has another comes in; with
     /// one machine's own a quarter of that.
     size_t known = 20'000;
+    /// For how long nobody is taken from the address of a stranger who was inside and has gone:
+    /// gRPC tells calls by their address alone, and may only now come to his.
+    std::chrono::milliseconds address_rest{5000};
     /// How often it is looked whether memory can be given back to the system.
     std::chrono::milliseconds trim_every{15'000};
   };
@@ -73,6 +76,10 @@ class ConnectionGate {
   /// Whoever called from there has shown no token that is one. Thread-safe.
   void mark_unknown(const std::string& address);
 
+  /// Our end of the connection from there, as own_end() has it. Calls that come from there are of
+  /// that one, or of one before it that was known. Thread-safe.
+  std::string own_end_to(const std::string& address) const;
+
   /// A call from there has begun. Thread-safe.
   void note_begun(const std::string& address);
   /// A call from there is over; `broken`: broken off before it was answered. Thread-safe.
@@ -92,6 +99,7 @@ class ConnectionGate {
   struct Connection {
     core::Descriptor socket;  ///< inside there is another of it, which may be closed before
     std::string address;
+    bool entered = false;  ///< it is inside
     bool known = false;
     std::string token_id{};               ///< by which it became known; empty: none
     std::string machine{};                ///< machine_key() of whose own that was; empty: nobody's
@@ -108,6 +116,7 @@ class ConnectionGate {
   void accept_from(const core::Descriptor& listener, Time now) HYADES_REQUIRES(mutex_);
   void watch_listeners(bool watched) const HYADES_REQUIRES(mutex_);
   void take(core::Descriptor socket, std::string address) HYADES_REQUIRES(mutex_);
+  bool may_be_mistaken(const std::string& address) const HYADES_REQUIRES(mutex_);
   void advance(Time now, std::vector<int>& entering) HYADES_REQUIRES(mutex_);
   int enter(Id id) HYADES_REQUIRES(mutex_);
   void drop(Id id) HYADES_REQUIRES(mutex_);
@@ -138,6 +147,8 @@ class ConnectionGate {
       HYADES_GUARDED_BY(mutex_);  ///< by token, and by machine_key()
   std::unordered_map<std::string, Time> resting_
       HYADES_GUARDED_BY(mutex_);  ///< tokens and machines, until when
+  std::unordered_map<std::string, Time> left_
+      HYADES_GUARDED_BY(mutex_);  ///< where strangers came from that were inside, until when
   Id next_id_ HYADES_GUARDED_BY(mutex_);
   /// No file could be opened: when it is tried again.
   std::optional<Time> accept_again_ HYADES_GUARDED_BY(mutex_);

@@ -142,7 +142,6 @@ core::Result<Listening> listen_at(const std::vector<std::string>& addresses) {
     error = listen_there(endpoint, socket, kept);
     if (error == 0) {
       listening.port = ntohs(endpoint.port());
-      listening.addresses.push_back(address_text(endpoint.text(), std::to_string(listening.port)));
       listening.beginnings_are_kept =
           kept && (listening.sockets.empty() || listening.beginnings_are_kept);
       listening.sockets.push_back(std::move(socket));

@@ -9,10 +9,9 @@
 
 namespace hyades::coordinator {
 
-/// Sockets at which others may connect, where they are (address_text()), and their port.
+/// Sockets at which others may connect, and their port.
 struct Listening {
   std::vector<core::Descriptor> sockets;
-  std::vector<std::string> addresses;
   uint16_t port = 0;
   bool beginnings_are_kept = false;  ///< keep_beginnings(), at all sockets
 };

@@ -38,6 +38,7 @@ struct Server::Parts {
       : gate(options.gate),
         admission(
             authority, workers_show,
+            [this](const std::string& address) { return gate.own_end_to(address); },
             [this](const Caller& caller) {
               gate.mark_known(caller.address, caller.token_id, caller.worker);
             },
@@ -103,7 +104,6 @@ core::Result<std::unique_ptr<Server>> Server::start(const farm::Door& door, Cont
   std::unique_ptr<Server> server(new Server(std::move(parts)));
   server->address_ = door.address.substr(0, door.address.rfind(':') + 1) + std::to_string(port);
   controller.farm().listens_at(server->address_);
-  for (const std::string& own : listening->addresses) authority.listens_at(own);
   auto& acceptor = *server->parts_->acceptor;
   const core::Status open =
       server->parts_->gate.open(std::move(*listening), [&acceptor](int socket) {

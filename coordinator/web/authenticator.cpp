@@ -64,7 +64,8 @@ Authenticator::Authenticator(Authority& authority, std::vector<std::string> name
 
 void Authenticator::set_port(uint16_t port) { cookie_ = fmt::format("hyades_session_{}=", port); }
 
-grpc::Status Authenticator::check(const WebRequest& request, Caller& caller) const {
+grpc::Status Authenticator::check(const WebRequest& request, const OwnEnd& own,
+                                  Caller& caller) const {
   caller.address = request.address;
   if (const grpc::Status site = check_site(request); !site.ok()) return site;
   const std::string& shown = request.header("authorization");
@@ -72,7 +73,7 @@ grpc::Status Authenticator::check(const WebRequest& request, Caller& caller) con
     const std::string_view session = find_cookie(request.header("cookie"), cookie_of(request));
     if (!session.empty() && authority_.guarded()) return admit_session(session, caller);
   }
-  return authority_.admit(shown, caller);
+  return authority_.admit(shown, caller, own);
 }
 
 grpc::Status Authenticator::check_site(const WebRequest& request) const {

@@ -177,7 +177,8 @@ class ConnectionOver final : public Connection,
     request_.path = std::move(target->path);
     request_.query = std::move(target->query);
     request_.address = address_;
-    const ConnectionWorld::Admitted admitted = world_.admit(request_);
+    const ConnectionWorld::Admitted admitted =
+        world_.admit(request_, [this] { return own_end(tcp(stream_).socket().native_handle()); });
     if (admitted.refusal) return send_away(*admitted.refusal);
     caller_ = request_.caller;
     const bool stranger = caller_.role == v1::ROLE_UNSPECIFIED;

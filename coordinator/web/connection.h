@@ -10,6 +10,7 @@
 #include <boost/asio/ip/tcp.hpp>
 
 #include "coordinator/access/authority.h"
+#include "coordinator/access/peer_user.h"
 #include "coordinator/controller/owner_connections.h"
 #include "coordinator/web/connection_count.h"
 #include "coordinator/web/exchange.h"
@@ -44,8 +45,9 @@ struct ConnectionWorld {
     uint64_t most_bytes = 0;            ///< that its body may have
     std::optional<WebReply> refusal{};  ///< the answer, where it may not come in
   };
-  /// Looks whether a request may come in, by all but its body, and puts in who asks.
-  std::function<Admitted(WebRequest&)> admit;
+  /// Looks whether a request may come in, by all but its body, and puts in who asks; by a
+  /// connection with this end of ours.
+  std::function<Admitted(WebRequest&, const OwnEnd&)> admit;
   /// Registers a caller whose answer takes its time (Authority::visit).
   std::function<std::unique_ptr<Visit>(const Caller&, std::function<void(const grpc::Status&)>)>
       visit;

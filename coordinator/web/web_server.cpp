@@ -73,7 +73,7 @@ struct WebServer::Parts {
         assets(controller, executors, known.audit()),
         pictures(controller),
         live(controller, executors, network, io),
-        world{[this](WebRequest& request) { return admit(request); },
+        world{[this](WebRequest& request, const OwnEnd& own) { return admit(request, own); },
               [this](const Caller& caller, std::function<void(const grpc::Status&)> leave) {
                 return authority.visit(caller, std::move(leave));
               },
@@ -146,8 +146,8 @@ struct WebServer::Parts {
     });
   }
 
-  ConnectionWorld::Admitted admit(WebRequest& request) const {
-    grpc::Status allowed = authenticator.check(request, request.caller);
+  ConnectionWorld::Admitted admit(WebRequest& request, const OwnEnd& own) const {
+    grpc::Status allowed = authenticator.check(request, own, request.caller);
     // What is not here at all is told to nobody who may not come in.
     const Router::Entry* route = router.find(request);
     const Operation& operation =
@@ -346,7 +346,6 @@ core::Result<std::unique_ptr<WebServer>> WebServer::start(const farm::Listen& li
   const tcp::endpoint own = running.acceptor.local_endpoint(error);
   const uint16_t port = own.port();
   running.authenticator.set_port(port);
-  authority.listens_at(address_text(own.address().to_string(), std::to_string(port)));
   server->url_ = (secure ? "https://" : "http://") +
                  listen.address.substr(0, listen.address.rfind(':') + 1) + std::to_string(port);
   running.accept();

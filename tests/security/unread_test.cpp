@@ -68,7 +68,7 @@ class LongAnswers {
                          [] { return std::make_shared<LongSource>(); })
       : budget(most, most),
         world{
-            [](WebRequest& request) {
+            [](WebRequest& request, const OwnEnd&) {
               request.caller.name = "ada";
               return ConnectionWorld::Admitted{};
             },

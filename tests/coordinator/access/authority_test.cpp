@@ -3,13 +3,18 @@
 
 #include <gtest/gtest.h>
 
+#include <netinet/in.h>
+#include <sys/socket.h>
+
 #include <atomic>
 #include <fstream>
 #include <iterator>
 #include <mutex>
 #include <thread>
 
+#include "coordinator/access/peer_user.h"
 #include "coordinator/access/token.h"
+#include "core/base/descriptor.h"
 #include "core/base/wall_clock.h"
 #include "tests/support/temp_folder.h"
 
@@ -317,6 +322,42 @@ TEST_F(Tokens, ThatAreNoneAreBoundedOnThisMachineTooWhereAProxyMayBe) {
   for (int i = 0; i < 20; ++i) EXPECT_EQ(from_proxy("x"), grpc::StatusCode::UNAUTHENTICATED) << i;
   EXPECT_EQ(from_proxy("x"), grpc::StatusCode::RESOURCE_EXHAUSTED);
   EXPECT_EQ(from_proxy(right), grpc::StatusCode::OK) << "whoever else comes by the proxy";
+}
+
+/// A connection between two sockets of this process.
+struct Joined {
+  Joined() {
+    sockaddr_in at{};
+    at.sin_family = AF_INET;
+    at.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+    socklen_t size = sizeof at;
+    auto* place = reinterpret_cast<sockaddr*>(&at);
+    EXPECT_EQ(::bind(listener.get(), place, size), 0);
+    EXPECT_EQ(::listen(listener.get(), 1), 0);
+    EXPECT_EQ(::getsockname(listener.get(), place, &size), 0);
+    EXPECT_EQ(::connect(theirs.get(), place, size), 0);
+    ours = core::Descriptor(::accept4(listener.get(), nullptr, nullptr, SOCK_CLOEXEC));
+  }
+  core::Descriptor listener{::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0)};
+  core::Descriptor theirs{::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0)};
+  core::Descriptor ours;
+};
+
+TEST_F(Tokens, WithoutAnyTheOwnerIsKnownByTheOneConnectionThatHeCallsBy) {
+  authority = Authority::open(*store, {.owner_only = true}).value();
+  const Joined his;
+  const Joined other;
+  caller.address = own_end(his.theirs.get());
+  const auto admitted = [&](const OwnEnd& own) { return authority->admit("", caller, own).ok(); };
+  const auto ours = [&] { return own_end(his.ours.get()); };
+  EXPECT_TRUE(admitted(ours));
+  EXPECT_FALSE(admitted({})) << "by none";
+  EXPECT_FALSE(admitted([&] { return own_end(other.ours.get()); })) << "by another";
+  int asked = 0;
+  const auto gone = [&] { return asked++ == 0 ? ours() : std::string(); };
+  EXPECT_FALSE(admitted(gone)) << "what the kernel has told may be of one after it";
+  ::shutdown(his.theirs.get(), SHUT_WR);
+  EXPECT_FALSE(admitted(ours));
 }
 
 TEST_F(Tokens, NonsenseIsNoToken) {

@@ -3,14 +3,22 @@
 #include <gtest/gtest.h>
 
 #include <arpa/inet.h>
+#include <fcntl.h>
+#include <linux/filter.h>
 #include <linux/netlink.h>
+#include <linux/seccomp.h>
 #include <netinet/in.h>
+#include <sys/prctl.h>
 #include <sys/socket.h>
+#include <sys/syscall.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <csignal>
+#include <array>
+#include <cerrno>
+#include <cstddef>
 #include <cstdint>
+#include <optional>
 
 #include "core/base/descriptor.h"
 
@@ -52,63 +60,191 @@ bool join(const core::Descriptor& caller, const core::Descriptor& listener) {
   return ::connect(caller.get(), reinterpret_cast<const sockaddr*>(&to), sizeof to) == 0;
 }
 
-const std::set<uid_t> kNobody;
-
-TEST(PeerUser, IsWhoHoldsTheOtherEnd) {
-  const std::set<uid_t> us{::geteuid()};
-  const core::Descriptor listener = socket_at("127.0.0.1", 0, true);
-  const std::set<std::string> ours{text_of(listener), "[::1]:" + port_of(listener)};
-  core::Descriptor caller = socket_at("127.0.0.1", 0, false);
-  const std::string peer = text_of(caller);
-  EXPECT_EQ(users_of_peer(peer, ours), kNobody);
-  ASSERT_TRUE(join(caller, listener));
-  EXPECT_EQ(users_of_peer(peer, ours), us);
-  EXPECT_EQ(users_of_peer(peer, {"127.0.0.1:1"}), kNobody) << "to another port";
-  EXPECT_EQ(users_of_peer("127.0.0.1:1", ours), kNobody) << "from another port";
-  EXPECT_EQ(users_of_peer("no address", ours), kNobody);
-  caller.close();
-  EXPECT_EQ(users_of_peer(peer, ours), kNobody) << "what nobody holds is nobody's, not root's";
+core::Descriptor accepted(const core::Descriptor& listener) {
+  return core::Descriptor(::accept4(listener.get(), nullptr, nullptr, SOCK_CLOEXEC));
 }
 
-/// Reading it for each who is refused, and has gone, would keep all others waiting. It would show
-/// the connection whatever address of ours is named.
+bool bind_to_loopback(const core::Descriptor& socket) {
+  return ::setsockopt(socket.get(), SOL_SOCKET, SO_BINDTODEVICE, "lo", 2) == 0;
+}
+
+/// Ends a connection without a farewell.
+void reset(core::Descriptor& socket) {
+  const linger at_once{1, 0};
+  ::setsockopt(socket.get(), SOL_SOCKET, SO_LINGER, &at_once, sizeof at_once);
+  socket.close();
+}
+
+/// What this thread makes meanwhile is another user's.
+class AsAnother {
+ public:
+  AsAnother() { EXPECT_EQ(::seteuid(kAnother), 0); }
+  ~AsAnother() { EXPECT_EQ(::seteuid(0), 0); }
+  AsAnother(const AsAnother&) = delete;
+  AsAnother& operator=(const AsAnother&) = delete;
+};
+
+/// From now on this process may not make this call, with this first argument: it ends, or is told
+/// that there is no such thing.
+bool forbid(uint32_t call, uint32_t first, uint32_t action) {
+  std::array<sock_filter, 6> program{{
+      {BPF_LD | BPF_W | BPF_ABS, 0, 0, offsetof(seccomp_data, nr)},
+      {BPF_JMP | BPF_JEQ | BPF_K, 0, 3, call},
+      {BPF_LD | BPF_W | BPF_ABS, 0, 0, offsetof(seccomp_data, args)},
+      {BPF_JMP | BPF_JEQ | BPF_K, 0, 1, first},
+      {BPF_RET | BPF_K, 0, 0, action},
+      {BPF_RET | BPF_K, 0, 0, SECCOMP_RET_ALLOW},
+  }};
+  const sock_fprog filter{program.size(), program.data()};
+  return ::prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0) == 0 &&
+         ::prctl(PR_SET_SECCOMP, SECCOMP_MODE_FILTER, &filter) == 0;
+}
+
+/// As in a container that may not ask the kernel for connections.
+bool forbid_questions() { return forbid(SYS_socket, AF_NETLINK, SECCOMP_RET_ERRNO | EAFNOSUPPORT); }
+bool forbid_files() {
+  return forbid(SYS_openat, static_cast<uint32_t>(AT_FDCWD), SECCOMP_RET_KILL);
+}
+
+/// What user_of_peer() tells a process that has forbidden itself something; 1 where it cannot tell.
+std::optional<uid_t> told_to(bool (*forbids)(), const std::string& peer, const std::string& own) {
+  constexpr int kOfNobody = 100;
+  constexpr int kOfAnother = 101;
+  const pid_t child = ::fork();
+  if (child == 0) {
+    if (!forbids()) ::_exit(1);
+    const auto user = user_of_peer(peer, own);
+    ::_exit(!user ? kOfNobody : *user == kAnother ? kOfAnother : *user == ::geteuid() ? 0 : 1);
+  }
+  int status = 0;
+  ::waitpid(child, &status, 0);
+  const int told = WIFEXITED(status) ? WEXITSTATUS(status) : 1;
+  if (told == kOfNobody) return std::nullopt;
+  return told == kOfAnother ? kAnother : told == 0 ? ::geteuid() : 1;
+}
+
+constexpr std::nullopt_t kNobody = std::nullopt;
+
+TEST(PeerUser, IsWhoHoldsTheOtherEnd) {
+  const core::Descriptor listener = socket_at("127.0.0.1", 0, true);
+  const std::string own = text_of(listener);
+  core::Descriptor caller = socket_at("127.0.0.1", 0, false);
+  const std::string peer = text_of(caller);
+  EXPECT_EQ(user_of_peer(peer, own), kNobody);
+  ASSERT_TRUE(join(caller, listener));
+  EXPECT_EQ(user_of_peer(peer, own), ::geteuid());
+  EXPECT_EQ(user_of_peer(peer, "127.0.0.1:1"), kNobody) << "to another port";
+  EXPECT_EQ(user_of_peer(peer, "[::1]:" + port_of(listener)), kNobody) << "to another address";
+  EXPECT_EQ(user_of_peer("127.0.0.1:1", own), kNobody) << "from another port";
+  EXPECT_EQ(user_of_peer("no address", own), kNobody);
+  EXPECT_EQ(user_of_peer(peer, ""), kNobody);
+  caller.close();
+  EXPECT_EQ(user_of_peer(peer, own), kNobody) << "what nobody holds is nobody's, not root's";
+}
+
+TEST(PeerUser, IsToldOfWhoIsBoundToTheDevice) {
+  const core::Descriptor listener = socket_at("127.0.0.1", 0, true);
+  const core::Descriptor caller = socket_at("127.0.0.1", 0, false);
+  if (!bind_to_loopback(caller)) GTEST_SKIP() << "only root may bind a socket to a device";
+  ASSERT_TRUE(join(caller, listener));
+  EXPECT_EQ(user_of_peer(text_of(caller), text_of(listener)), ::geteuid());
+}
+
+/// Reading it for each who is refused, and has gone, would keep all others waiting.
 TEST(PeerUser, TheTableOfAllIsNotReadWhereTheKernelCanTell) {
   const core::Descriptor kernel(::socket(AF_NETLINK, SOCK_RAW | SOCK_CLOEXEC, NETLINK_SOCK_DIAG));
   if (!kernel.valid()) GTEST_SKIP() << "it cannot";
+  EXPECT_EQ(told_to(forbid_files, "127.0.0.1:1", "127.0.0.1:2"), kNobody);
+  EXPECT_EQ(told_to(forbid_files, "[::1]:1", "[::1]:2"), kNobody);
+}
+
+TEST(PeerUser, TheTableTellsWhereTheKernelMayNotBeAsked) {
   const core::Descriptor listener = socket_at("0.0.0.0", 0, true);
   const core::Descriptor caller = socket_at("127.0.0.1", 0, false);
   ASSERT_TRUE(join(caller, listener));
-  const std::string port = port_of(listener);
-  EXPECT_EQ(users_of_peer(text_of(caller), {"127.0.0.2:" + port}), kNobody);
-  EXPECT_EQ(users_of_peer(text_of(caller), {"0.0.0.0:" + port}), kNobody);
-  EXPECT_EQ(users_of_peer(text_of(caller), {"127.0.0.1:" + port}), std::set{::geteuid()});
+  const std::string peer = text_of(caller);
+  EXPECT_EQ(told_to(forbid_questions, peer, text_of(listener)), ::geteuid());
+  EXPECT_EQ(told_to(forbid_questions, peer, "127.0.0.2:" + port_of(listener)), kNobody);
+  EXPECT_EQ(told_to(forbid_questions, peer, "127.0.0.1:1"), kNobody);
 }
 
-TEST(PeerUser, WhoTakesAnothersPortIsNotTakenForHim) {
-  if (::geteuid() != 0) GTEST_SKIP() << "only root can be two users";
+/// A thief has the port of root's connection to one of our addresses, and calls at the other: that
+/// he hides his own end must not make him root there.
+class ThiefOfAPort : public testing::Test {
+ protected:
+  void SetUp() override {
+    if (::geteuid() != 0) GTEST_SKIP() << "only root can be two users";
+    ASSERT_TRUE(join(owner, one));
+    ASSERT_EQ(user_of_peer(text_of(owner), text_of(one)), 0U);
+  }
+  /// The thief connects, bound to the device where he may.
+  void steal(bool bound) {
+    const AsAnother now;
+    his = socket_at("127.0.0.1", ntohs(place_of(owner).sin_port), false);
+    if (bound && !bind_to_loopback(his)) GTEST_SKIP() << "he may not";
+    ASSERT_TRUE(join(his, two));
+  }
+  std::optional<uid_t> at_two() const { return user_of_peer(text_of(owner), text_of(two)); }
+  /// ... by the table of all connections.
+  std::optional<uid_t> at_two_by_table() const {
+    return told_to(forbid_questions, text_of(owner), text_of(two));
+  }
+
   const core::Descriptor one = socket_at("127.0.0.1", 0, true);
   const core::Descriptor two = socket_at("127.0.0.1", 0, true);
-  const core::Descriptor caller = socket_at("127.0.0.1", 0, false);
-  ASSERT_TRUE(join(caller, one));
-  int told[2];
-  ASSERT_EQ(::pipe(told), 0);
-  const core::Descriptor done(told[0]);
-  core::Descriptor begun(told[1]);
-  const pid_t thief = ::fork();
-  if (thief == 0) {
-    if (::setuid(kAnother) != 0) ::_exit(1);
-    const core::Descriptor his = socket_at("127.0.0.1", ntohs(place_of(caller).sin_port), false);
-    if (join(his, two) && ::write(told[1], "x", 1) == 1) ::pause();
-    ::_exit(1);
+  const core::Descriptor owner = socket_at("127.0.0.1", 0, false);
+  core::Descriptor his;
+};
+
+TEST_F(ThiefOfAPort, IsHimself) {
+  steal(false);
+  EXPECT_EQ(at_two(), kAnother);
+  EXPECT_EQ(at_two_by_table(), kAnother);
+  EXPECT_EQ(user_of_peer(text_of(owner), text_of(one)), 0U) << "and the owner stays one";
+}
+
+TEST_F(ThiefOfAPort, IsHimselfBoundToTheDevice) {
+  steal(true);
+  EXPECT_EQ(at_two(), kAnother);
+  EXPECT_EQ(at_two_by_table(), kAnother);
+}
+
+TEST_F(ThiefOfAPort, IsNobodyHalfClosed) {
+  for (const bool bound : {false, true}) {
+    steal(bound);
+    ::shutdown(his.get(), SHUT_WR);
+    EXPECT_EQ(at_two(), kNobody) << bound;
+    EXPECT_EQ(at_two_by_table(), kNobody) << bound;
+    reset(his);
   }
-  begun.close();
-  char byte = 0;
-  const bool stolen = ::read(done.get(), &byte, 1) == 1;
-  EXPECT_EQ(users_of_peer(text_of(caller), {text_of(one), text_of(two)}),
-            stolen ? (std::set<uid_t>{0, kAnother}) : std::set<uid_t>{0});
-  EXPECT_TRUE(stolen);
-  ::kill(thief, SIGKILL);
-  ::waitpid(thief, nullptr, 0);
+}
+
+TEST_F(ThiefOfAPort, IsNobodyOnceHeHasGone) {
+  steal(false);
+  reset(his);
+  EXPECT_EQ(at_two(), kNobody) << "reset";
+  EXPECT_EQ(at_two_by_table(), kNobody) << "reset";
+  steal(false);
+  his.close();
+  EXPECT_EQ(at_two(), kNobody) << "closed";
+  EXPECT_EQ(at_two_by_table(), kNobody) << "closed";
+}
+
+TEST(OwnEnd, IsWhereTheConnectionCameInWhileItIsOpen) {
+  const core::Descriptor listener = socket_at("0.0.0.0", 0, true);
+  core::Descriptor caller = socket_at("127.0.0.1", 0, false);
+  ASSERT_TRUE(join(caller, listener));
+  const core::Descriptor ours = accepted(listener);
+  EXPECT_EQ(own_end(ours.get()), text_of(listener)) << "at one address of all";
+  ::shutdown(caller.get(), SHUT_WR);
+  EXPECT_EQ(own_end(ours.get()), "");
+  caller = socket_at("127.0.0.1", 0, false);
+  ASSERT_TRUE(join(caller, listener));
+  const core::Descriptor other = accepted(listener);
+  EXPECT_EQ(own_end(other.get()), text_of(listener));
+  reset(caller);
+  EXPECT_EQ(own_end(other.get()), "");
+  EXPECT_EQ(own_end(-1), "");
 }
 
 }  // namespace

@@ -34,15 +34,20 @@ size_t open_files() {
 /// One that connects, and says nothing.
 class PlainCaller {
  public:
-  explicit PlainCaller(uint16_t port, const char* from = "127.0.0.1")
+  /// `own_port`: 0 for one that is free; others may have it too, to other addresses.
+  explicit PlainCaller(uint16_t port, const char* from = "127.0.0.1", uint16_t own_port = 0,
+                       const char* to_host = "127.0.0.1")
       : socket_(::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0)) {
-    sockaddr_in own = at(from, 0);
+    const int yes = 1;
+    ::setsockopt(socket_.get(), SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
+    sockaddr_in own = at(from, own_port);
     EXPECT_EQ(::bind(socket_.get(), reinterpret_cast<sockaddr*>(&own), sizeof own), 0);
-    const sockaddr_in to = at("127.0.0.1", port);
+    const sockaddr_in to = at(to_host, port);
     EXPECT_EQ(::connect(socket_.get(), reinterpret_cast<const sockaddr*>(&to), sizeof to), 0);
     socklen_t size = sizeof own;
     ::getsockname(socket_.get(), reinterpret_cast<sockaddr*>(&own), &size);
-    address_ = std::string(from) + ":" + std::to_string(ntohs(own.sin_port));
+    own_port_ = ntohs(own.sin_port);
+    address_ = std::string(from) + ":" + std::to_string(own_port_);
   }
 
   const std::string& address() const { return address_; }
@@ -52,7 +57,14 @@ class PlainCaller {
     return ::poll(&ready, 1, static_cast<int>(within.count())) == 1 &&
            ::recv(socket_.get(), &byte, 1, 0) <= 0;
   }
+  uint16_t own_port() const { return own_port_; }
   void hang_up() { socket_.close(); }
+  /// Without a farewell: the port is free at once.
+  void reset() {
+    const linger at_once{1, 0};
+    ::setsockopt(socket_.get(), SOL_SOCKET, SO_LINGER, &at_once, sizeof at_once);
+    socket_.close();
+  }
   /// Leaves so many bytes to the kernel.
   void talk(size_t bytes) const {
     const std::string text(bytes, 'x');
@@ -70,6 +82,7 @@ class PlainCaller {
 
   core::Descriptor socket_;
   std::string address_;
+  uint16_t own_port_ = 0;
 };
 
 /// A gate with a room behind it in which nobody does anything.
@@ -86,8 +99,8 @@ class ConnectionGateTest : public testing::Test {
     if (gate) gate->close();
   }
 
-  void open(const std::string& address = "127.0.0.1:0") {
-    auto listening = listen_at({address});
+  void open(const std::vector<std::string>& addresses = {"127.0.0.1:0"}) {
+    auto listening = listen_at(addresses);
     ASSERT_TRUE(listening.ok()) << (listening ? "" : listening.error().message);
     port = listening->port;
     gate.emplace(limits);
@@ -350,7 +363,7 @@ TEST_F(ConnectionGateTest, ListensAtAllThatANameStandsFor) {
 }
 
 TEST_F(ConnectionGateTest, AnAddressIsTheSameAtASocketForBothFamilies) {
-  open("[::]:0");
+  open({"[::]:0"});
   const PlainCaller caller(port);
   ASSERT_TRUE(holds(0, 1, 0));
   gate->mark_known(caller.address());
@@ -373,6 +386,47 @@ TEST_F(ConnectionGateTest, WhoseTokenIsRevokedGoesAfterAFewCalls) {
   gate->mark_unknown(caller.address());
   EXPECT_TRUE(caller.ended(20s));
   EXPECT_TRUE(holds(0, 0, 0));
+}
+
+TEST_F(ConnectionGateTest, TellsAtWhichAddressSomebodyCameIn) {
+  open({"127.0.0.1:0", "127.0.0.2:0"});
+  PlainCaller one(port);
+  const PlainCaller two(port, "127.0.0.9", 0, "127.0.0.2");
+  ASSERT_TRUE(holds(0, 2, 0));
+  EXPECT_EQ(gate->own_end_to(one.address()), "127.0.0.1:" + std::to_string(port));
+  EXPECT_EQ(gate->own_end_to(two.address()), "127.0.0.2:" + std::to_string(port));
+  EXPECT_EQ(gate->own_end_to("127.0.0.1:1"), "");
+  one.reset();
+  EXPECT_EQ(gate->own_end_to(one.address()), "");
+}
+
+/// gRPC tells whose a call is by the address alone.
+TEST_F(ConnectionGateTest, NobodyComesFromWhereAStrangerIsOrHasJustBeen) {
+  limits.address_rest = 1h;
+  open({"127.0.0.1:0", "127.0.0.2:0"});
+  PlainCaller stranger(port);
+  ASSERT_TRUE(holds(0, 1, 0));
+  const PlainCaller meanwhile(port, "127.0.0.1", stranger.own_port(), "127.0.0.2");
+  EXPECT_TRUE(meanwhile.ended(20s));
+  stranger.reset();
+  const PlainCaller after(port, "127.0.0.1", stranger.own_port());
+  EXPECT_TRUE(after.ended(20s));
+  EXPECT_EQ(gate->own_end_to(after.address()), "");
+}
+
+TEST_F(ConnectionGateTest, WhoIsKnownKeepsHisAddressAndMayComeFromThereAgain) {
+  limits.address_rest = 1h;
+  open({"127.0.0.1:0", "127.0.0.2:0"});
+  PlainCaller known(port);
+  ASSERT_TRUE(holds(0, 1, 0));
+  gate->mark_known(known.address());
+  const PlainCaller thief(port, "127.0.0.1", known.own_port(), "127.0.0.2");
+  EXPECT_TRUE(thief.ended(20s));
+  EXPECT_EQ(gate->own_end_to(known.address()), "127.0.0.1:" + std::to_string(port));
+  known.reset();
+  const PlainCaller again(port, "127.0.0.1", known.own_port());
+  EXPECT_TRUE(holds(0, 1, 0));
+  EXPECT_EQ(gate->own_end_to(again.address()), "127.0.0.1:" + std::to_string(port));
 }
 
 TEST_F(ConnectionGateTest, WhoHasFarTooManyCallsInWorkGoes) {
