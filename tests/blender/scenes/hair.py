@@ -56,6 +56,6 @@ def matt_hair() -> None:
     hairy(material("Fur", Color=(0.3, 0.5, 0.2)), shape=-0.5, use_close_tip=True)
 
 
-@scene(samples=1024)
+@scene(block=0.08, samples=1024)  # noise of both
 def children() -> None:
     hairy(shader(Melanin=0.3), count=40, child_type="INTERPOLATED", rendered_child_count=8)
