@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <iterator>
 #include <set>
+#include <string_view>
 #include <utility>
 
 #include <fmt/format.h>
@@ -69,6 +70,9 @@ WebReply too_many() {
 std::string tag_of(const StoredOutput& file) {
   return "\"" + farm::hex_from_wire(file.sha256) + "\"";
 }
+
+/// Of an open job's tag all but the frame's version: the same until the job begins anew.
+std::string_view life_of(std::string_view tag) { return tag.substr(0, tag.rfind('.')); }
 
 /// What a picture is made of.
 struct Shot {
@@ -177,17 +181,21 @@ struct PicturesApi::OpenFile {
   core::Image image;
 };
 
-WebReply PicturesApi::of_file(const Asked& asked, const farm::ByteBudget::Owner& owner,
-                              const FrameNow& now, std::optional<OpenFile>& open) {
+grpc::Status PicturesApi::of_file(const Asked& asked, const farm::ByteBudget::Owner& owner,
+                                  const FrameNow& now, std::optional<OpenFile>& open,
+                                  WebReply& reply) {
   const auto best = best_file(asked);
-  if (!best) return error_reply(farm::unavailable(best.error()));
+  if (!best) return farm::unavailable(best.error());
   if (!*best) {
-    return error_reply(
-        {grpc::StatusCode::NOT_FOUND, fmt::format("no picture of frame {} is kept", asked.frame)});
+    return {grpc::StatusCode::NOT_FOUND,
+            fmt::format("no picture of frame {} is kept", asked.frame)};
   }
   const StoredOutput& file = **best;
   const std::string tag = tag_of(file);
-  if (const auto made = find(asked, tag, true)) return *made;
+  if (auto made = find(asked, tag, true)) {
+    reply = std::move(*made);
+    return grpc::Status::OK;
+  }
   if (!open || open->path != file.path) {
     open.reset();
     OpenFile fresh;
@@ -195,19 +203,19 @@ WebReply PicturesApi::of_file(const Asked& asked, const farm::ByteBudget::Owner&
     const grpc::Status read =
         controller_.queries().picture(asked.job, file, fresh.image, fresh.room);
     if (read.error_code() == grpc::StatusCode::DATA_LOSS) {
-      return error_reply(damaged_output(file.path));
+      return damaged_output(file.path);
     }
-    if (!read.ok()) return error_reply(read);
+    if (!read.ok()) return read;
     open = std::move(fresh);
   }
   FrameNow plain = now;
   plain.tone_map = "srgb";  // a finished picture has its own
   plain.exposure = 0;
   const bool exact = core::file_extension(file.path) == ".exr";
-  WebReply reply = show(asked, plain, {open->image, {}, exact}, tag);
+  reply = show(asked, plain, {open->image, {}, exact}, tag);
   count(reply, owner);
   keep(asked, tag, true, reply, owner);
-  return reply;
+  return grpc::Status::OK;
 }
 
 /// Has the picture made when its frame has a turn, which comes by whoever asks for the frame:
@@ -234,11 +242,10 @@ bool PicturesApi::may_wait(const std::string& owner) const {
          (owner.empty() || own < kMostFramesOfOne);
 }
 
-/// The frame waits for a turn of the owner's, before all others or behind them, if it does not yet.
-void PicturesApi::line_up(JobAndFrame id, const std::string& owner, bool in_front) {
+/// The frame waits for a turn of the owner's, behind all others, if it does not yet.
+void PicturesApi::line_up(JobAndFrame id, const std::string& owner) {
   const std::pair place{id, owner};
-  if (std::find(queue_.begin(), queue_.end(), place) != queue_.end()) return;
-  queue_.insert(in_front ? queue_.begin() : queue_.end(), place);
+  if (std::find(queue_.begin(), queue_.end(), place) == queue_.end()) queue_.push_back(place);
 }
 
 /// Whether the owner may wait for one more of the frame: what somebody waits for already is free.
@@ -255,10 +262,11 @@ void PicturesApi::begin_some() {
   while (const auto id = begin_next()) take(*id);
 }
 
-/// Whether a frame is in work by a turn of the owner's.
-bool PicturesApi::has_turn(const std::string& owner) const {
-  return !owner.empty() && std::any_of(in_work_.begin(), in_work_.end(),
-                                       [&](const auto& one) { return one.second.owner == owner; });
+/// Whether a frame other than `id` is in work by a turn of the owner's.
+bool PicturesApi::has_turn(const std::string& owner, JobAndFrame id) const {
+  return !owner.empty() && std::any_of(in_work_.begin(), in_work_.end(), [&](const auto& one) {
+    return one.first != id && one.second.owner == owner;
+  });
 }
 
 /// The frame whose turn it is; none: as many are in work as may be, or their callers'.
@@ -273,14 +281,14 @@ std::optional<PicturesApi::JobAndFrame> PicturesApi::begin_next() {
   const auto best = shares_.next(
       queue_.begin(), queue_.end(), now,
       [&](const std::pair<JobAndFrame, std::string>& one) HYADES_NO_THREAD_SAFETY_ANALYSIS {
-        const bool may = !in_work_.contains(one.first) && !has_turn(one.second);
+        const bool may = !in_work_.contains(one.first) && !has_turn(one.second, one.first);
         return may ? &one.second : nullptr;
       });
   if (best == queue_.end()) return std::nullopt;
   const auto [id, owner] = *best;
   // Nothing else begins meanwhile: the memory would always be another's.
   if (alone_.contains(id) && !in_work_.empty()) return std::nullopt;
-  in_work_[id] = {owner, now, now, alone_.erase(id) > 0};
+  in_work_[id] = {owner, now, now, alone_.erase(id) > 0, {}};
   return id;
 }
 
@@ -324,73 +332,99 @@ void PicturesApi::take_film(JobAndFrame id, const FrameNow& now) {
 
 void PicturesApi::take_files(JobAndFrame id, const FrameNow& now) {
   make_wanted(id, [this, now, open = std::optional<OpenFile>()](
-                      const Asked& asked, const farm::ByteBudget::Owner& owner) mutable {
-    return of_file(asked, owner, now, open);
-  });
+                      const Asked& asked, const farm::ByteBudget::Owner& owner,
+                      WebReply& reply) mutable { return of_file(asked, owner, now, open, reply); });
 }
 
 void PicturesApi::make_all(JobAndFrame id, const FrameNow& now, const grpc::Status& found,
                            std::shared_ptr<const core::Film> film) {
   if (lacks_room(found) && !turn_of(id).alone) return leave(id, {}, true);
+  if (!found.ok()) return end(id, error_reply(found));
   core::Image image;
   SampledMask sampled;
-  const grpc::Status made = !found.ok() ? found : within_memory([&] {
+  const grpc::Status made = within_memory([&] {
     image = film->normalised();
     sampled = sampled_pixels(*film);
     return grpc::Status::OK;
   });
-  make_wanted(
-      id, [this, now, made, room = std::move(film), image = std::move(image),
-           sampled = std::move(sampled)](const Asked& asked, const farm::ByteBudget::Owner& owner) {
-        if (!made.ok()) return error_reply(made);
-        WebReply reply = show(asked, now, {image, sampled}, now.tag);
-        count(reply, owner);
-        keep(asked, now.tag, false, reply, owner);
-        return reply;
-      });
+  make_wanted(id, [this, now, made, room = std::move(film), image = std::move(image),
+                   sampled = std::move(sampled)](
+                      const Asked& asked, const farm::ByteBudget::Owner& owner, WebReply& reply) {
+    if (!made.ok()) return made;
+    reply = show(asked, now, {image, sampled}, now.tag);
+    count(reply, owner);
+    keep(asked, now.tag, false, reply, owner);
+    return grpc::Status::OK;
+  });
 }
 
-/// Makes what is wanted of the frame by now, until its turn is over. What finds no memory beside
-/// another frame is made in a turn alone.
+/// Makes what is wanted of the frame by now, until its turn is over: those who wait share it, by
+/// whomever it has come. What finds no memory beside another frame is made in a turn alone.
 void PicturesApi::make_wanted(JobAndFrame id, Make make) {
   const Turn turn = turn_of(id);
   Wanted wanted = take_wanted(id);
   bool no_room = false;
-  for (bool over = false; !wanted.empty() && !over;) {
-    const auto next = next_of(wanted, turn.owner);
+  for (bool over = wanted.empty(); !over;) {
+    const auto next = next_of(id, wanted);
     const auto& [asked, askers] = *next;
-    const auto who = std::find_if(askers.begin(), askers.end(),
-                                  [&](const Asker& asker) { return has_room(asker.owner); });
-    const bool may = !is_closed() && who != askers.end();
-    const WebReply made =
-        may           ? reply_in_memory([&, &asked = asked] { return make(asked, who->owner); })
-        : is_closed() ? closing()
-                      : too_many();
-    no_room = may && made.status == 503 && !turn.alone;
+    WebReply reply;
+    no_room = !make_one(asked, askers, make, reply) && !turn.alone;
     if (no_room) break;
-    charge(id, payer_of(askers, turn.owner));
-    for (const Asker& asker : askers) asker.answer(made);
+    charge(id, askers);
+    for (const Asker& asker : askers) asker.answer(reply);
     wanted.erase(next);
-    over =
-        !wanted.empty() && gives_way(id, payer_of(next_of(wanted, turn.owner)->second, turn.owner));
+    over = wanted.empty() || gives_way(id, wanted);
   }
   make = nullptr;  // who is next needs its room
   leave(id, wanted, no_room);
 }
 
-/// What is made next in a turn of the owner's: what he waits for before what others do.
-PicturesApi::Wanted::iterator PicturesApi::next_of(Wanted& wanted, const std::string& owner) {
-  const auto his = std::find_if(wanted.begin(), wanted.end(), [&](const auto& one) {
-    return payer_of(one.second, owner) == owner;
-  });
-  return his == wanted.end() ? wanted.begin() : his;
+/// Makes `reply`, which those who have asked are told. False where there is no memory for it: of
+/// all that may be wrong nothing else is better in a turn alone.
+bool PicturesApi::make_one(const Asked& asked, const Askers& askers, const Make& make,
+                           WebReply& reply) {
+  const auto who = std::find_if(askers.begin(), askers.end(),
+                                [&](const Asker& asker) { return has_room(asker.owner); });
+  if (is_closed() || who == askers.end()) {
+    reply = is_closed() ? closing() : too_many();
+    return true;
+  }
+  const grpc::Status made = within_memory([&] { return make(asked, who->owner, reply); });
+  if (!made.ok()) reply = error_reply(made);
+  return !lacks_room(made);
 }
 
-/// Whose time it takes to make a picture, in a turn of the owner's.
-const std::string& PicturesApi::payer_of(const Askers& askers, const std::string& owner) {
-  const bool his = std::any_of(askers.begin(), askers.end(),
-                               [&](const Asker& asker) { return asker.owner.name == owner; });
-  return his ? owner : askers.front().owner.name;
+/// What was spent for somebody: in the turn, then lately in all. Whoever has other turns meanwhile
+/// would never be next in this one, if what is spent in them counted before.
+PicturesApi::Spent PicturesApi::spent_for(const std::string& who, const Turn& turn,
+                                          Clock::time_point now) const {
+  return {turn.spent.used(who, now), shares_.used(who, now)};
+}
+
+/// Of those who have asked for a picture the one for whom least was spent: it is made for him.
+const std::string& PicturesApi::payer_of(const Askers& askers, const Turn& turn,
+                                         Clock::time_point now) const {
+  const auto spent = [&](const Asker& asker) HYADES_NO_THREAD_SAFETY_ANALYSIS {
+    return spent_for(asker.owner.name, turn, now);
+  };
+  return std::min_element(askers.begin(), askers.end(),
+                          [&](const Asker& a, const Asker& b) { return spent(a) < spent(b); })
+      ->owner.name;
+}
+
+/// What is made next in the turn of what is wanted: for whom least was spent.
+PicturesApi::Wanted::iterator PicturesApi::next_of(JobAndFrame id, Wanted& wanted) {
+  const core::MutexLock lock(mutex_);
+  return next_in(in_work_.at(id), wanted, Clock::now());
+}
+
+PicturesApi::Wanted::iterator PicturesApi::next_in(const Turn& turn, Wanted& wanted,
+                                                   Clock::time_point now) const {
+  const auto spent = [&](const auto& one) HYADES_NO_THREAD_SAFETY_ANALYSIS {
+    return spent_for(payer_of(one.second, turn, now), turn, now);
+  };
+  return std::min_element(wanted.begin(), wanted.end(),
+                          [&](const auto& a, const auto& b) { return spent(a) < spent(b); });
 }
 
 PicturesApi::Turn PicturesApi::turn_of(JobAndFrame id) {
@@ -398,25 +432,36 @@ PicturesApi::Turn PicturesApi::turn_of(JobAndFrame id) {
   return in_work_.at(id);
 }
 
-/// What the turn has taken since this was last called was for `whom`.
-void PicturesApi::charge(JobAndFrame id, const std::string& whom) {
+/// What the turn has taken since the last charge was for a picture, for one of those who have asked
+/// for it.
+void PicturesApi::charge(JobAndFrame id, const Askers& askers) {
   const core::MutexLock lock(mutex_);
+  charge_locked(id, payer_of(askers, in_work_.at(id), Clock::now()));
+}
+
+void PicturesApi::charge_locked(JobAndFrame id, const std::string& whom) {
   Turn& turn = in_work_.at(id);
   const Clock::time_point now = Clock::now();
   const std::chrono::duration<double> taken = now - std::exchange(turn.charged, now);
-  if (!whom.empty()) shares_.use(whom, taken.count(), now);
+  if (whom.empty()) return;
+  turn.spent.use(whom, taken.count(), now);
+  shares_.use(whom, taken.count(), now);
 }
 
-/// Whether the frame's turn ends before its next picture, which is for `whom`: it has lasted for
-/// long, and somebody may be next for whom lately less time was spent.
-bool PicturesApi::gives_way(JobAndFrame id, const std::string& whom) {
+/// Whether the frame's turn ends before what is next of `wanted`: it has lasted for long, and
+/// somebody waits for whom less time was spent: in this turn, where he waits for the same frame,
+/// lately in all, where for one that might begin if this turn was over.
+bool PicturesApi::gives_way(JobAndFrame id, Wanted& wanted) {
   const core::MutexLock lock(mutex_);
   const Clock::time_point now = Clock::now();
-  if (now - in_work_.at(id).begun < longest_turn_) return false;
-  const double used = shares_.used(whom, now);
+  const Turn& turn = in_work_.at(id);
+  if (now - turn.begun < longest_turn_) return false;
+  const Spent next = spent_for(payer_of(next_in(turn, wanted, now)->second, turn, now), turn, now);
   return std::any_of(queue_.begin(), queue_.end(), [&](const auto& one) HYADES_REQUIRES(mutex_) {
-    const bool may = one.first == id || !in_work_.contains(one.first);
-    return may && !has_turn(one.second) && shares_.used(one.second, now) < used;
+    const Spent other = spent_for(one.second, turn, now);
+    if (one.first == id) return other < next;
+    const bool may = !in_work_.contains(one.first) && !has_turn(one.second, id);
+    return may && other.lately < next.lately;
   });
 }
 
@@ -470,27 +515,43 @@ void PicturesApi::end(JobAndFrame id, const WebReply& reply) {
 }
 
 /// The frame's turn is over, and the next begins. For what is `left` of it, or was not taken, there
-/// is another one: alone and before other frames of the same callers, where there was `no_room`.
+/// is another one: alone where there was `no_room`.
 void PicturesApi::leave(JobAndFrame id, const Wanted& left, bool no_room) {
-  charge(id, turn_of(id).owner);
   {
     const core::MutexLock lock(mutex_);
+    charge_locked(id, in_work_.at(id).owner);
     in_work_.erase(id);
     if (no_room) alone_.insert(id);
-    for (const auto& [asked, askers] : left) {
-      Askers& all = wanted_[id][asked];
-      all.insert(all.end(), askers.begin(), askers.end());
-    }
-    std::set<std::string> owners;
+    put_back(id, left);
     if (const auto again = wanted_.find(id); again != wanted_.end()) {
-      for (const auto& [asked, askers] : again->second) {
-        for (const Asker& asker : askers) owners.insert(asker.owner.name);
-      }
+      for (const std::string& owner : owners_of(again->second)) line_up(id, owner);
     }
-    for (const std::string& owner : owners) line_up(id, owner, no_room);
   }
   // Where so much waits that this may not, whatever is asked for next begins with what is next.
   (void)pool_.submit([this] { begin_some(); });
+}
+
+/// What is left of a turn is wanted again. Those who wait for it had their places already: behind
+/// all other frames of theirs, each time, these might never come.
+void PicturesApi::put_back(JobAndFrame id, const Wanted& left) {
+  for (const auto& [asked, askers] : left) {
+    Askers& all = wanted_[id][asked];
+    all.insert(all.begin(), askers.begin(), askers.end());
+  }
+  for (const std::string& owner : owners_of(left)) {
+    const std::pair place{id, owner};
+    std::erase(queue_, place);
+    queue_.push_front(place);
+  }
+}
+
+/// All who wait for any of the pictures.
+std::set<std::string> PicturesApi::owners_of(const Wanted& wanted) {
+  std::set<std::string> owners;
+  for (const auto& [asked, askers] : wanted) {
+    for (const Asker& asker : askers) owners.insert(asker.owner.name);
+  }
+  return owners;
 }
 
 std::optional<WebReply> PicturesApi::find(const Asked& asked, const std::string& tag, bool over) {
@@ -498,7 +559,9 @@ std::optional<WebReply> PicturesApi::find(const Asked& asked, const std::string&
   const auto found = index_.find(asked);
   if (found == index_.end()) return std::nullopt;
   const Made& made = found->second->second;
-  const bool fresh = made.tag == tag || (!over && !made.over && Clock::now() - made.at < kFreshFor);
+  // A job that begins anew has nothing of before.
+  const bool of_now = !over && !made.over && life_of(made.tag) == life_of(tag);
+  const bool fresh = made.tag == tag || (of_now && Clock::now() - made.at < kFreshFor);
   if (!fresh) return std::nullopt;
   kept_.splice(kept_.begin(), kept_, found->second);
   return made.reply;

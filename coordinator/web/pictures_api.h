@@ -26,10 +26,11 @@ namespace hyades::coordinator {
 /// Frames as they are now: of the film in mid-render, of a finished file afterwards. What was made
 /// once is kept for all who ask. What is asked of a frame is made together, of one copy of its film
 /// at most once a second, and of two frames at a time, for different callers: next is for whom
-/// lately least time was spent. Such a turn ends between two pictures once it has lasted for long,
-/// and somebody waits for whom less was spent. A frame for which there is no memory beside the
-/// other one has its next turn alone. Pictures that somebody takes his time to read count until he
-/// has them, and where they are too many no more are made.
+/// lately least time was spent. Those who want pictures of the same frame share its turn: next is
+/// for whom least of it was spent. It ends between two pictures once it has lasted for long, and
+/// somebody waits for whom less was spent. A frame for which there is no memory beside the other
+/// one has its next turn alone. Pictures that somebody takes his time to read count until he has
+/// them, and where they are too many no more are made.
 class PicturesApi {
  public:
   /// Of all pictures together, kept or on their way, and of those that were made for one caller.
@@ -88,8 +89,9 @@ class PicturesApi {
     Answer answer;
   };
   using Askers = std::vector<Asker>;
-  /// Makes a picture, and counts its bytes for the owner.
-  using Make = std::function<WebReply(const Asked&, const farm::ByteBudget::Owner&)>;
+  /// Makes a picture, and counts its bytes for the owner. RESOURCE_EXHAUSTED where there is no
+  /// memory for it, and for nothing else.
+  using Make = std::function<grpc::Status(const Asked&, const farm::ByteBudget::Owner&, WebReply&)>;
   /// The pictures that are wanted of a frame, and who waits for them.
   using Wanted = std::map<Asked, Askers>;
   using JobAndFrame = std::pair<uint64_t, int32_t>;
@@ -99,6 +101,14 @@ class PicturesApi {
     Clock::time_point begun;
     Clock::time_point charged;  ///< until when its time is counted
     bool alone = false;         ///< nothing else is begun beside it
+    farm::FairShares spent;     ///< seconds of it, for callers
+  };
+  /// Seconds that were spent for somebody; compared in this order.
+  struct Spent {
+    double in_turn = 0;
+    double lately = 0;
+
+    auto operator<=>(const Spent&) const = default;
   };
   /// Films come by threads that may outlive this.
   struct Gate {
@@ -109,14 +119,13 @@ class PicturesApi {
   void answer_picture(const Asked& asked, const Asker& asker);
   core::Result<std::optional<StoredOutput>> best_file(const Asked& asked);
   struct OpenFile;
-  WebReply of_file(const Asked& asked, const farm::ByteBudget::Owner& owner, const FrameNow& now,
-                   std::optional<OpenFile>& open);
+  grpc::Status of_file(const Asked& asked, const farm::ByteBudget::Owner& owner,
+                       const FrameNow& now, std::optional<OpenFile>& open, WebReply& reply);
   bool is_closed() const;
   bool enqueue(const Asked& asked, const Asker& asker);
   bool may_wait(const std::string& owner) const HYADES_REQUIRES(mutex_);
-  bool has_turn(const std::string& owner) const HYADES_REQUIRES(mutex_);
-  void line_up(JobAndFrame id, const std::string& owner, bool in_front = false)
-      HYADES_REQUIRES(mutex_);
+  bool has_turn(const std::string& owner, JobAndFrame id) const HYADES_REQUIRES(mutex_);
+  void line_up(JobAndFrame id, const std::string& owner) HYADES_REQUIRES(mutex_);
   std::optional<JobAndFrame> begin_next() HYADES_EXCLUDES(mutex_);
   static bool may_want(const Wanted& wanted, const Asked& asked, const std::string& owner);
   void begin_some();
@@ -127,13 +136,22 @@ class PicturesApi {
   void make_all(JobAndFrame id, const FrameNow& now, const grpc::Status& found,
                 std::shared_ptr<const core::Film> film);
   void make_wanted(JobAndFrame id, Make make);
-  static Wanted::iterator next_of(Wanted& wanted, const std::string& owner);
-  static const std::string& payer_of(const Askers& askers, const std::string& owner);
+  bool make_one(const Asked& asked, const Askers& askers, const Make& make, WebReply& reply);
+  Spent spent_for(const std::string& who, const Turn& turn, Clock::time_point now) const
+      HYADES_REQUIRES(mutex_);
+  const std::string& payer_of(const Askers& askers, const Turn& turn, Clock::time_point now) const
+      HYADES_REQUIRES(mutex_);
+  Wanted::iterator next_of(JobAndFrame id, Wanted& wanted) HYADES_EXCLUDES(mutex_);
+  Wanted::iterator next_in(const Turn& turn, Wanted& wanted, Clock::time_point now) const
+      HYADES_REQUIRES(mutex_);
   Turn turn_of(JobAndFrame id) HYADES_EXCLUDES(mutex_);
-  void charge(JobAndFrame id, const std::string& whom) HYADES_EXCLUDES(mutex_);
-  bool gives_way(JobAndFrame id, const std::string& whom) HYADES_EXCLUDES(mutex_);
+  void charge(JobAndFrame id, const Askers& askers) HYADES_EXCLUDES(mutex_);
+  void charge_locked(JobAndFrame id, const std::string& whom) HYADES_REQUIRES(mutex_);
+  bool gives_way(JobAndFrame id, Wanted& wanted) HYADES_EXCLUDES(mutex_);
   void end(JobAndFrame id, const WebReply& reply);
   void leave(JobAndFrame id, const Wanted& left, bool no_room) HYADES_EXCLUDES(mutex_);
+  void put_back(JobAndFrame id, const Wanted& left) HYADES_REQUIRES(mutex_);
+  static std::set<std::string> owners_of(const Wanted& wanted);
   bool has_room(const farm::ByteBudget::Owner& owner);
   void count(WebReply& reply, const farm::ByteBudget::Owner& owner) const;
   std::optional<WebReply> find(const Asked& asked, const std::string& tag, bool over);

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <chrono>
 #include <future>
 #include <memory>
 #include <mutex>
@@ -14,6 +15,7 @@
 
 #include "coordinator/web/pictures_api.h"
 #include "farm/byte_budget.h"
+#include "tests/coordinator/services/troubled_store.h"
 #include "tests/coordinator/web/web_world.h"
 
 namespace hyades::coordinator {
@@ -61,10 +63,11 @@ class UnreadPictures : public ::testing::Test {
   void ask(const std::string& who, int width, Answer answer) const {
     ask(who, job_, width, answer);
   }
-  void ask(const std::string& who, const std::string& job, int width, const Answer& answer) const {
+  void ask(const std::string& who, const std::string& job, int width, const Answer& answer,
+           const std::string& frame = "1") const {
     WebRequest request;
     request.method = "GET";
-    request.path = {"api", "v1", "jobs", job, "frames", "1", "picture"};
+    request.path = {"api", "v1", "jobs", job, "frames", frame, "picture"};
     request.query = {{"format", "half"}, {"width", std::to_string(width)}};
     request.caller.name = who;
     router_.answer(request, answer);
@@ -110,6 +113,61 @@ class UnreadPictures : public ::testing::Test {
     ASSERT_TRUE(held.ok()) << held.error_message();
   }
 
+  /// copy_film() of a taker that waits until the promise is kept: no other copy comes until then.
+  void hold_film(const std::string& job, std::promise<void>& go) const {
+    copy_film(job,
+              [gone = std::shared_future<void>(go.get_future())](const auto&...) { gone.wait(); });
+  }
+
+  /// A second is spent for somebody, in a turn of the job's frame.
+  void spend_for(const std::string& who, const std::string& job) const {
+    std::promise<void> go;
+    hold_film(job, go);
+    std::vector<std::promise<void>> answered(2);
+    for (size_t i = 0; i < answered.size(); ++i) {
+      ask(who, job, 16 + static_cast<int>(i), [&, i](const WebReply&) {
+        // What an answer takes counts for the next one.
+        if (i == 0) std::this_thread::sleep_for(1s);
+        answered[i].set_value();
+      });
+    }
+    await_asked(who);
+    go.set_value();
+    for (std::promise<void>& one : answered) one.get_future().wait();
+  }
+
+  /// An answer that notes who has got his picture.
+  Answer note(const std::string& who) {
+    return [this, who](const WebReply& reply) {
+      EXPECT_EQ(reply.status, 200U) << who;
+      const std::lock_guard lock(served_mutex_);
+      served_.push_back(who);
+    };
+  }
+  std::vector<std::string> served() {
+    const std::lock_guard lock(served_mutex_);
+    return served_;
+  }
+  bool await_served(size_t count) {
+    return eventually([&] { return served().size() == count; });
+  }
+
+  std::string tag_of(uint64_t job) const {
+    FrameNow now;
+    (void)world_.farm.controller->queries().frame_now(job, 1, now);
+    return now.tag;
+  }
+  /// Ends the job and tries it again.
+  void begin_anew(uint64_t job) const {
+    v1::JobResponse now;
+    const auto call = world_.farm.context();
+    ASSERT_TRUE(world_.farm.jobs->Cancel(call.get(), about(job), &now).ok());
+    ASSERT_TRUE(world_.farm.wait_for(job, v1::JOB_STATE_CANCELLED));
+    const auto again = world_.farm.context();
+    ASSERT_TRUE(world_.farm.jobs->Retry(again.get(), about(job), &now).ok());
+    ASSERT_TRUE(eventually([&] { return !tag_of(job).empty(); }));
+  }
+
   /// The world's own server may hold the memory of what it has just answered for a moment more.
   void await_room() {
     ASSERT_TRUE(eventually([&] { return answer_to("eve", 79).status == 200; }));
@@ -144,6 +202,8 @@ class UnreadPictures : public ::testing::Test {
   const std::shared_ptr<farm::ByteBudget> held_ =
       std::make_shared<farm::ByteBudget>(kMost, kMostOfOne);
   std::chrono::milliseconds longest_turn_ = PicturesApi::kLongestTurn;
+  std::mutex served_mutex_;
+  std::vector<std::string> served_;  ///< as of note()
   Router router_;
   std::optional<PicturesApi> api_;
 };
@@ -372,29 +432,14 @@ TEST_F(UnreadPictures, ALongTurnGivesWayBetweenTwoPictures) {
   const std::string second = another_job();
   const std::string third = another_job();
   std::vector<std::promise<void>> go(2);
-  for (size_t i = 0; i < go.size(); ++i) {
-    copy_film(i == 0 ? job_ : second, [gone = std::shared_future<void>(go[i].get_future())](
-                                          const auto&...) { gone.wait(); });
-  }
-  std::mutex mutex;
-  std::vector<std::string> served;
-  const auto note = [&](const std::string& who) {
-    return [&, who](const WebReply& reply) {
-      EXPECT_EQ(reply.status, 200U);
-      const std::lock_guard lock(mutex);
-      served.push_back(who);
-    };
-  };
-  const auto count = [&] {
-    const std::lock_guard lock(mutex);
-    return served.size();
-  };
+  hold_film(job_, go[0]);
+  hold_film(second, go[1]);
   // Where two films are in work, bob has to wait until one of them is over.
   ask("carl", second, 16, note("carl"));
   await_asked("carl");
   for (int i = 0; i < 4; ++i) {
     ask("ada", job_, 16 + i, [&, noted = note("ada")](const WebReply& reply) {
-      const bool first = count() == 0;
+      const bool first = served().empty();
       noted(reply);
       if (!first) return;
       ask("bob", third, 16, note("bob"));
@@ -403,10 +448,167 @@ TEST_F(UnreadPictures, ALongTurnGivesWayBetweenTwoPictures) {
   }
   await_asked("ada");
   go[0].set_value();
-  EXPECT_TRUE(eventually([&] { return count() == 5; }));
+  EXPECT_TRUE(await_served(5));
   go[1].set_value();
-  EXPECT_TRUE(eventually([&] { return count() == 6; }));
-  EXPECT_EQ(served, (std::vector<std::string>{"ada", "bob", "ada", "ada", "ada", "carl"}));
+  EXPECT_TRUE(await_served(6));
+  EXPECT_EQ(served(), (std::vector<std::string>{"ada", "bob", "ada", "ada", "ada", "carl"}));
+}
+
+/// Who wants pictures of a frame shares its turn with others, by whomever it has come, and
+/// whatever was spent for him lately.
+TEST_F(UnreadPictures, InATurnWhoHasHadLeastOfItIsNext) {
+  start(false);
+  spend_for("bob", another_job());
+  std::promise<void> go;
+  hold_film(job_, go);
+  for (int i = 0; i < 3; ++i) ask("ada", job_, 17 + i, note("ada"));
+  await_asked("ada");
+  ask("bob", job_, 16, note("bob"));
+  await_asked("bob");
+  go.set_value();
+  EXPECT_TRUE(await_served(4));
+  EXPECT_EQ(served(), (std::vector<std::string>{"ada", "bob", "ada", "ada"}));
+}
+
+/// A turn gives way to those who wait for the same frame, whatever else is in work for them, and
+/// was.
+TEST_F(UnreadPictures, ALongTurnGivesWayToWhoHasAnotherTurn) {
+  longest_turn_ = 0ms;
+  start(false);
+  const std::string second = another_job();
+  spend_for("bob", second);
+  std::vector<std::promise<void>> go(2);
+  hold_film(job_, go[0]);
+  hold_film(second, go[1]);
+  ask("bob", second, 18, note("bob's other"));
+  await_asked("bob");
+  for (int i = 0; i < 6; ++i) {
+    ask("ada", job_, 16 + i, [&, noted = note("ada")](const WebReply& reply) {
+      const bool first = served().empty();
+      noted(reply);
+      if (!first) return;
+      ask("bob", job_, 30, note("bob"));
+      await_asked("bob");
+    });
+  }
+  await_asked("ada");
+  go[0].set_value();
+  EXPECT_TRUE(await_served(7));
+  go[1].set_value();
+  EXPECT_TRUE(await_served(8));
+  const std::vector<std::string> all = served();
+  EXPECT_LE(std::find(all.begin(), all.end(), "bob") - all.begin(), 2) << "after one of hers more";
+}
+
+/// Who has all that he wants of a frame waits no longer for another one than anybody, though it is
+/// by him that the frame's turn has come.
+TEST_F(UnreadPictures, ALongTurnGivesWayToItsOwner) {
+  longest_turn_ = 0ms;
+  start(false);
+  const std::string second = another_job();
+  std::vector<std::promise<void>> go(2);
+  hold_film(job_, go[0]);
+  const auto begun = std::chrono::steady_clock::now();
+  ask("ada", job_, 16, [&, noted = note("ada")](const WebReply& reply) {
+    noted(reply);
+    ask("ada", second, 16, note("ada's other"));
+    await_asked("ada");
+    hold_film(job_, go[1]);  // of what bob wants one is made of the film that is there
+    // This is spent for bob, and more than was spent for her.
+    std::this_thread::sleep_for(2 * (std::chrono::steady_clock::now() - begun));
+  });
+  await_asked("ada");
+  for (int i = 0; i < 3; ++i) ask("bob", job_, 17 + i, note("bob"));
+  await_asked("bob");
+  go[0].set_value();
+  EXPECT_TRUE(eventually([&] { return served().size() >= 3; }));
+  go[1].set_value();
+  EXPECT_TRUE(await_served(5));
+  EXPECT_EQ(served(), (std::vector<std::string>{"ada", "bob", "ada's other", "bob", "bob"}));
+}
+
+/// What is left of a turn is before all else that its caller has asked for since.
+TEST_F(UnreadPictures, WhatGivesWayKeepsItsPlace) {
+  longest_turn_ = 0ms;
+  start(false);
+  const std::string second = another_job();
+  const std::string third = another_job();
+  const std::string fourth = another_job();
+  std::vector<std::promise<void>> go(2);
+  hold_film(job_, go[0]);
+  hold_film(second, go[1]);
+  ask("carl", second, 16, note("carl"));
+  await_asked("carl");
+  for (int i = 0; i < 2; ++i) {
+    ask("ada", job_, 16 + i, [&, noted = note("ada")](const WebReply& reply) {
+      const bool first = served().empty();
+      noted(reply);
+      if (!first) return;
+      ask("ada", fourth, 16, note("ada's other"));
+      await_asked("ada");
+      ask("bob", third, 16, note("bob"));
+      await_asked("bob");
+    });
+  }
+  await_asked("ada");
+  go[0].set_value();
+  EXPECT_TRUE(await_served(4));
+  go[1].set_value();
+  EXPECT_TRUE(await_served(5));
+  EXPECT_EQ(served(), (std::vector<std::string>{"ada", "bob", "ada", "ada's other", "carl"}));
+}
+
+/// That nobody has begun with a frame is no lack of memory, which others' ends would mend.
+TEST_F(UnreadPictures, FramesThatHaveNotBegunWaitForNobody) {
+  start(false);
+  const std::string second = another_job(FarmWorld::document(2));
+  std::promise<void> go;
+  hold_film(job_, go);
+  ask("carl", job_, 16, note("carl"));
+  await_asked("carl");
+  std::promise<unsigned> adas;
+  ask(
+      "ada", second, 16, [&](const WebReply& reply) { adas.set_value(reply.status); }, "2");
+  auto ada = adas.get_future();
+  const bool told = ada.wait_for(20s) == std::future_status::ready;
+  EXPECT_TRUE(served().empty());
+  go.set_value();
+  EXPECT_TRUE(told) << "carl's film is waited for";
+  EXPECT_EQ(ada.get(), 503U);
+  EXPECT_TRUE(await_served(1));
+}
+
+/// Nor is that the store fails.
+TEST_F(UnreadPictures, WhatTheStoreFailsWaitsForNobody) {
+  const auto trouble = std::make_shared<Trouble>();
+  world_.farm.wrap_store = [&](std::unique_ptr<JobStore> store) {
+    return std::make_unique<TroubledStore>(std::move(store), trouble);
+  };
+  start(true);
+  const std::string second = another_finished_job();
+  std::vector<std::promise<void>> begun(2);
+  std::vector<std::promise<void>> go(2);
+  const auto hold = [&](size_t i) {
+    return [&, i, gone = std::shared_future<void>(go[i].get_future())](const WebReply&) {
+      begun[i].set_value();
+      gone.wait();
+    };
+  };
+  ask("carl", job_, 16, hold(0));
+  begun[0].get_future().wait();
+  ask("dave", job_, 16, hold(1));  // it is there
+  begun[1].get_future().wait();
+  // It fails when ada's frame has begun: eve's question is between what is done for ada.
+  std::promise<unsigned> adas;
+  ask("ada", second, 16, [&](const WebReply& reply) { adas.set_value(reply.status); });
+  ask("eve", "999", 16, [&](const WebReply&) { trouble->of_reads(Trouble::Kind::fails); });
+  go[1].set_value();
+  auto ada = adas.get_future();
+  const bool told = ada.wait_for(20s) == std::future_status::ready;
+  trouble->of_reads(Trouble::Kind::none);
+  go[0].set_value();
+  EXPECT_TRUE(told) << "carl's turn is waited for";
+  EXPECT_EQ(ada.get(), 503U);
 }
 
 /// What has found no memory waits for its caller's share, as all else does.
@@ -506,21 +708,20 @@ TEST_F(UnreadPictures, TheTagOfAJobThatBeganAnewIsAnother) {
   start(false);
   worker_.reset();
   const uint64_t job = world_.farm.submit(1);
-  const auto tag = [&] {
-    FrameNow now;
-    (void)world_.farm.controller->queries().frame_now(job, 1, now);
-    return now.tag;
-  };
-  const std::string first = tag();
+  const std::string first = tag_of(job);
   EXPECT_NE(first, "");
-  v1::JobResponse now;
-  const auto call = world_.farm.context();
-  ASSERT_TRUE(world_.farm.jobs->Cancel(call.get(), about(job), &now).ok());
-  ASSERT_TRUE(world_.farm.wait_for(job, v1::JOB_STATE_CANCELLED));
-  const auto again = world_.farm.context();
-  ASSERT_TRUE(world_.farm.jobs->Retry(again.get(), about(job), &now).ok());
-  ASSERT_TRUE(eventually([&] { return !tag().empty(); }));
-  EXPECT_NE(tag(), first);
+  begin_anew(job);
+  EXPECT_NE(tag_of(job), first);
+}
+
+/// ... nor is one that was made a moment ago.
+TEST_F(UnreadPictures, PicturesOfAJobThatBeganAnewAreNotOfBefore) {
+  start(false);
+  const WebReply before = answer_to("ada", 16);
+  ASSERT_EQ(before.status, 200U);
+  worker_.reset();
+  begin_anew(std::stoull(job_));
+  EXPECT_NE(answer_to("ada", 16).headers, before.headers) << "the same ETag";
 }
 
 }  // namespace
