@@ -83,12 +83,12 @@ const char* expected_size(CurveBasis basis) {
   }
 }
 
-bool is_finite(const Vec3& v) {
+bool finite_place(const Vec3& v) {
   return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
 }
 
 Status check_point(const StrandList& list, size_t i) {
-  if (!is_finite(list.points[i])) return Error{fmt::format("point {} is not finite", i)};
+  if (!finite_place(list.points[i])) return Error{fmt::format("point {} is not finite", i)};
   if (!(list.radii[i] >= 0.0F && std::isfinite(list.radii[i]))) {
     return Error{fmt::format("the thickness of point {} is {}, expected at least 0", i,
                              2.0F * list.radii[i])};

@@ -145,7 +145,7 @@ bool parse_number(std::string_view text, double& value) {
 
 namespace {
 
-constexpr size_t kLongestName = 100;
+constexpr size_t kMostLettersOfName = 100;
 
 /// What a name may begin with.
 bool begins_name(char c) {
@@ -158,12 +158,12 @@ bool is_of_name(char c) { return begins_name(c) || c == '-' || c == '.' || c == 
 }  // namespace
 
 bool is_valid_name(std::string_view name) {
-  return !name.empty() && name.size() <= kLongestName && name.back() != ' ' &&
+  return !name.empty() && name.size() <= kMostLettersOfName && name.back() != ' ' &&
          begins_name(name.front()) && std::all_of(name.begin(), name.end(), is_of_name);
 }
 
 std::string valid_name(std::string_view text) {
-  std::string name(text.substr(0, kLongestName));
+  std::string name(text.substr(0, kMostLettersOfName));
   // Not in the middle of a letter of several bytes.
   for (size_t i = name.size(); text.size() > name.size() && i > 0; --i) {
     const bool continues = (static_cast<unsigned char>(text[i]) & 0xC0U) == 0x80U;
