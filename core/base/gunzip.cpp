@@ -87,4 +87,12 @@ Result<Bytes> gunzip(std::span<const std::byte> bytes, size_t limit) {
   }
 }
 
+Result<Bytes> open_unpacked(AssetResolver& assets, const std::string& reference) {
+  const Result<Bytes> bytes = assets.open(reference);
+  if (!bytes || !is_gzip(bytes->span())) return bytes;
+  auto plain = gunzip(bytes->span(), unpacked_limit(bytes->size()));
+  if (!plain) return plain.error().in(reference);
+  return plain;
+}
+
 }  // namespace hyades::core

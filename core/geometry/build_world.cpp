@@ -59,8 +59,8 @@ std::vector<Way> choose_ways(const std::vector<Placement>& placements,
       ways.push_back(Way::copied);
       continue;
     }
+    any_changes = any_changes || p.changes_between_frames;
     if (p.shape.kind == Shape::Kind::curves) {
-      any_changes = any_changes || p.changes_between_frames;
       ways.push_back(Way::instance);
       continue;
     }
@@ -72,7 +72,6 @@ std::vector<Way> choose_ways(const std::vector<Placement>& placements,
     // What deforms is another mesh in the next frame: nothing of it can be shared.
     const bool rebuilt_often =
         p.changes_between_frames && !deforms && triangle_count(p) > thresholds.shared_triangles;
-    any_changes = any_changes || p.changes_between_frames;
     if (mesh && (repeated || moves || rebuilt_often) && can_be_instanced(p)) {
       ways.push_back(Way::instance);
     } else if (moves || deforms || p.changes_between_frames) {

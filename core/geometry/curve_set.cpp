@@ -129,11 +129,6 @@ Vec3 CurveSet::color_at(uint32_t piece, float u) const {
   return glm::max(Vec3(sum), Vec3(0.0F));  // Catmull and Rom's overshoots
 }
 
-size_t CurveSet::memory() const {
-  return points.capacity() * sizeof(Vec4) + pieces.capacity() * sizeof(uint32_t) +
-         strands.capacity() * sizeof(uint32_t) + colors.capacity() * sizeof(Vec3);
-}
-
 Result<std::shared_ptr<CurveSet>> make_curve_set(const StrandList& list, CurveBasis basis) {
   auto set = std::make_shared<CurveSet>();
   set->basis = basis;

@@ -58,8 +58,6 @@ struct CurveSet {
 
   /// The colour there; white where there is none.
   Vec3 color_at(uint32_t piece, float u) const;
-
-  size_t memory() const;  ///< bytes
 };
 
 /// The strands as a file lists them.

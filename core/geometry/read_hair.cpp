@@ -131,15 +131,6 @@ Result<StrandList> read_strands(std::span<const char> bytes, size_t room) {
   return list;
 }
 
-Result<std::shared_ptr<const CurveSet>> read(std::span<const char> bytes, CurveBasis basis,
-                                             size_t room) {
-  const auto list = read_strands(bytes, room);
-  if (!list) return list.error();
-  auto set = make_curve_set(*list, basis);
-  if (!set) return set.error();
-  return std::shared_ptr<const CurveSet>(std::move(*set));
-}
-
 template <class T>
 void put(std::byte*& at, const std::vector<T>& values) {
   if (values.empty()) return;
@@ -152,14 +143,15 @@ void put(std::byte*& at, const std::vector<T>& values) {
 Result<std::shared_ptr<const CurveSet>> read_hair(AssetResolver& assets,
                                                   const std::string& reference, CurveBasis basis,
                                                   size_t room) {
-  Result<Bytes> bytes = assets.open(reference);
+  const Result<Bytes> bytes = open_unpacked(assets, reference);
   if (!bytes) return bytes.error();
-  if (is_gzip(bytes->span())) bytes = gunzip(bytes->span(), unpacked_limit(bytes->size()));
-  if (!bytes) return bytes.error().in(reference);
   const FpMode mode;
-  auto set = read({bytes->chars(), bytes->size()}, basis, room);
+  const auto list = read_strands({bytes->chars(), bytes->size()}, room);
+  if (!list) return list.error().in(reference);
+  auto set = make_curve_set(*list, basis);
   if (!set) return set.error().in(reference);
-  return set;
+  (*set)->name = reference;
+  return std::shared_ptr<const CurveSet>(std::move(*set));
 }
 
 Bytes hair_bytes(const StrandList& strands) {

@@ -31,11 +31,7 @@ struct MeshText {
 };
 
 Result<MeshText> open_mesh(AssetResolver& assets, const std::string& reference) {
-  Result<Bytes> bytes = assets.open(reference);
-  if (bytes && is_gzip(bytes->span())) {
-    bytes = gunzip(bytes->span(), unpacked_limit(bytes->size()));
-    if (!bytes) return bytes.error().in(reference);
-  }
+  const Result<Bytes> bytes = open_unpacked(assets, reference);
   if (!bytes) return bytes.error();
   MeshText text;
   text.bytes = *bytes;

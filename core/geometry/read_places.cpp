@@ -221,10 +221,8 @@ Result<std::shared_ptr<const std::vector<PlaceMatrix>>> read(std::span<const cha
 Result<std::shared_ptr<const std::vector<PlaceMatrix>>> read_places(AssetResolver& assets,
                                                                     const std::string& reference,
                                                                     size_t room) {
-  Result<Bytes> bytes = assets.open(reference);
+  const Result<Bytes> bytes = open_unpacked(assets, reference);
   if (!bytes) return bytes.error();
-  if (is_gzip(bytes->span())) bytes = gunzip(bytes->span(), unpacked_limit(bytes->size()));
-  if (!bytes) return bytes.error().in(reference);
   const FpMode mode;
   auto places = read({bytes->chars(), bytes->size()}, room);
   if (!places) return places.error().in(reference);

@@ -9,6 +9,7 @@
 #include <glm/gtc/matrix_transform.hpp>
 
 #include "core/base/elementary.h"
+#include "import/lua/list_item.h"
 #include "import/lua/machine.h"
 #include "import/mass_copies.h"
 
@@ -21,12 +22,12 @@ constexpr std::array<std::string_view, 5> kKeys = {"at", "scale", "rotate_x", "r
 constexpr float kRadians = 0.017453292519943295F;
 
 /// One table of the list, on top of the stack.
-class Copy {
+class Copy : public ListItem {
  public:
-  Copy(lua_State* state, lua_Integer index) : state_(state), index_(index) {}
+  Copy(lua_State* state, lua_Integer index) : ListItem(state, "copy", index) {}
 
   Mat4 matrix() const {
-    check_keys();
+    check_keys(kKeys, "at, scale, rotate_x, rotate_y or rotate_z");
     Mat4 m(1.0F);
     const Vec3 scale = vector("scale", Vec3(1.0F));
     for (int i = 0; i < 3; ++i) m[i] *= scale[i];
@@ -36,40 +37,13 @@ class Copy {
   }
 
  private:
-  void check_keys() const {
-    lua_pushnil(state_);
-    while (lua_next(state_, -2) != 0) {
-      lua_pop(state_, 1);
-      const bool text = lua_type(state_, -1) == LUA_TSTRING;
-      const std::string_view key = text ? lua_tostring(state_, -1) : luaL_typename(state_, -1);
-      bool known = false;
-      for (const std::string_view one : kKeys) known = known || key == one;
-      if (!known || !text) {
-        luaL_error(state_,
-                   "copy %I has the key '%s', expected at, scale, rotate_x, rotate_y or "
-                   "rotate_z",
-                   index_, key.data());
-      }
-    }
-  }
-
-  float number(const char* key) const {
-    if (lua_type(state_, -1) != LUA_TNUMBER || !std::isfinite(lua_tonumber(state_, -1))) {
-      luaL_error(state_, "%s of copy %I is a %s, expected a finite number", key, index_,
-                 luaL_typename(state_, -1));
-    }
-    const auto value = static_cast<float>(lua_tonumber(state_, -1));
-    lua_pop(state_, 1);
-    return value;
-  }
-
   Vec3 vector(const char* key, const Vec3& otherwise) const {
     const int type = lua_getfield(state_, -1, key);
     if (type == LUA_TNIL) {
       lua_pop(state_, 1);
       return otherwise;
     }
-    if (type == LUA_TNUMBER && std::string_view(key) == "scale") return Vec3(number(key));
+    if (type == LUA_TNUMBER && std::string_view(key) == "scale") return Vec3(take_number(key));
     if (type != LUA_TTABLE || lua_rawlen(state_, -1) != 3) {
       luaL_error(state_, "%s of copy %I is a %s, expected {x, y, z}", key, index_,
                  type == LUA_TTABLE ? "table without three numbers" : luaL_typename(state_, -1));
@@ -77,7 +51,7 @@ class Copy {
     Vec3 value;
     for (int i = 0; i < 3; ++i) {
       lua_rawgeti(state_, -1, i + 1);
-      value[i] = number(key);
+      value[i] = take_number(key);
     }
     lua_pop(state_, 1);
     return value;
@@ -90,7 +64,7 @@ class Copy {
       lua_pop(state_, 1);
       return;
     }
-    const SinCos angle = sin_cos(kRadians * number(key));
+    const SinCos angle = sin_cos(kRadians * take_number(key));
     const int a = (axis + 1) % 3;
     const int b = (axis + 2) % 3;
     for (int column = 0; column < 3; ++column) {
@@ -99,9 +73,6 @@ class Copy {
       m[column][b] = angle.sin * old[a] + angle.cos * old[b];
     }
   }
-
-  lua_State* state_;
-  lua_Integer index_;
 };
 
 }  // namespace

@@ -6,22 +6,24 @@
 #include <cstdint>
 #include <string_view>
 
+#include "import/lua/list_item.h"
 #include "import/lua/machine.h"
 
 namespace hyades::core::lua {
 
 namespace {
 
+constexpr std::array<std::string_view, 3> kStrandKeys = {"points", "width", "color"};
 constexpr lua_Integer kMostStrands = 4'000'000;
 constexpr size_t kMostPointsOfOne = 65536;  ///< as many as its file can say
 
 /// One table of the list, on top of the stack.
-class Strand {
+class Strand : public ListItem {
  public:
-  Strand(lua_State* state, lua_Integer index) : state_(state), index_(index) {}
+  Strand(lua_State* state, lua_Integer index) : ListItem(state, "strand", index) {}
 
   void add_to(StrandList& list) const {
-    check_keys();
+    check_keys(kStrandKeys, "points, width or color");
     const auto [root, tip] = width();
     const size_t count = add_points(list);
     list.sizes.push_back(static_cast<uint32_t>(count));
@@ -38,30 +40,6 @@ class Strand {
     float tip;
   };
 
-  void check_keys() const {
-    lua_pushnil(state_);
-    while (lua_next(state_, -2) != 0) {
-      lua_pop(state_, 1);
-      const bool text = lua_type(state_, -1) == LUA_TSTRING;
-      const std::string_view key = text ? lua_tostring(state_, -1) : luaL_typename(state_, -1);
-      if (!text || (key != "points" && key != "width" && key != "color")) {
-        luaL_error(state_, "strand %I has the key '%s', expected points, width or color", index_,
-                   key.data());
-      }
-    }
-  }
-
-  /// The number on top of the stack, which it takes off.
-  float number(const char* key) const {
-    if (lua_type(state_, -1) != LUA_TNUMBER || !std::isfinite(lua_tonumber(state_, -1))) {
-      luaL_error(state_, "%s of strand %I has a %s, expected a finite number", key, index_,
-                 luaL_typename(state_, -1));
-    }
-    const auto value = static_cast<float>(lua_tonumber(state_, -1));
-    lua_pop(state_, 1);
-    return value;
-  }
-
   /// The list of `count` numbers on top of the stack.
   template <size_t count>
   std::array<float, count> numbers(const char* key) const {
@@ -73,7 +51,7 @@ class Strand {
     std::array<float, count> values{};
     for (size_t i = 0; i < count; ++i) {
       lua_rawgeti(state_, -1, static_cast<lua_Integer>(i) + 1);
-      values[i] = number(key);
+      values[i] = take_number(key);
     }
     return values;
   }
@@ -83,7 +61,7 @@ class Strand {
     const int type = lua_getfield(state_, -1, "width");
     if (type == LUA_TNUMBER) {
       lua_pushvalue(state_, -1);
-      widths.root = widths.tip = number("width");
+      widths.root = widths.tip = take_number("width");
     } else if (type != LUA_TTABLE) {
       luaL_error(state_, "width of strand %I is a %s, expected a number or {root, tip}", index_,
                  lua_typename(state_, type));
@@ -137,9 +115,6 @@ class Strand {
     }
     lua_pop(state_, 1);
   }
-
-  lua_State* state_;
-  lua_Integer index_;
 };
 
 }  // namespace

@@ -52,6 +52,7 @@ TEST_F(ReadHair, ReadsBackWhatWasWritten) {
   EXPECT_EQ((*set)->strands, (*made)->strands);
   EXPECT_EQ((*set)->colors, (*made)->colors);
   EXPECT_EQ((*set)->strand_count(), 3U);
+  EXPECT_EQ((*set)->name, "a.hair");
 }
 
 // The header's own numbers count for what has no array: 2 strands of 2 points, 0.5 thick, red.
