@@ -4,7 +4,7 @@ import bpy
 from scene import camera, floor, light, material, primitive, scene, world
 
 
-def hairy(fur, count: int = 300, **settings):
+def hairy(fur, count: int = 600, **settings):
     """A ball with hair of this material in the light of a lamp and of the world."""
     floor()
     world((0.3, 0.35, 0.4))
@@ -15,7 +15,8 @@ def hairy(fur, count: int = 300, **settings):
     bpy.context.scene.cycles_curves.shape = "THICK"
     hair = ball.modifiers.new("Hair", "PARTICLE_SYSTEM").particle_system.settings
     hair.type, hair.count, hair.hair_length, hair.hair_step, hair.render_step = "HAIR", count, 0.7, 4, 3
-    hair.material, hair.radius_scale, hair.root_radius, hair.tip_radius = 2, 0.06, 1.0, 0.25
+    # Thin: where roots stand within each other, the two have different words for what is inside.
+    hair.material, hair.radius_scale, hair.root_radius, hair.tip_radius = 2, 0.02, 1.0, 0.25
     for name, value in settings.items():
         setattr(hair, name, value)
     return ball
@@ -56,6 +57,6 @@ def matt_hair() -> None:
     hairy(material("Fur", Color=(0.3, 0.5, 0.2)), shape=-0.5, use_close_tip=True)
 
 
-@scene(block=0.08, samples=1024)  # noise of both
+@scene(samples=1024)
 def children() -> None:
-    hairy(shader(Melanin=0.3), count=40, child_type="INTERPOLATED", rendered_child_count=8)
+    hairy(shader(Melanin=0.3), count=100, child_type="INTERPOLATED", rendered_child_count=8)
