@@ -3,13 +3,13 @@
 #include <cstddef>
 #include <filesystem>
 #include <map>
-#include <mutex>
 #include <optional>
 #include <set>
 #include <span>
 #include <utility>
 #include <vector>
 
+#include "core/base/mutex.h"
 #include "core/job/scene_document.h"
 #include "core/job/yaml_writer.h"
 #include "import/scene_source.h"
@@ -106,12 +106,12 @@ class ImportingResolver::Sources : public AssetResolver {
 
   /// Keeps a line, once.
   void note(const std::string& line) {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     if (noted_.insert(line).second) notes_.push_back(line);
   }
 
   std::vector<std::string> notes() const {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     return notes_;
   }
 
@@ -119,19 +119,18 @@ class ImportingResolver::Sources : public AssetResolver {
   AssetResolver& files_;
   MissingTextures missing_;
   SceneLinks links_;
-  mutable std::mutex mutex_;
-  // Guarded by mutex_.
-  std::vector<std::string> notes_;
-  std::set<std::string> noted_;
+  mutable Mutex mutex_;
+  std::vector<std::string> notes_ HYADES_GUARDED_BY(mutex_);
+  std::set<std::string> noted_ HYADES_GUARDED_BY(mutex_);
 };
 
 struct ImportingResolver::State {
   AssetResolver& files;
   Sources lenient;
-  mutable std::mutex mutex;
-  // Guarded by mutex.
-  std::map<std::string, Bytes> added;  ///< and documents that were made
-  std::map<std::string, SourcePtr> sources;
+  mutable Mutex mutex;
+  /// And documents that were made.
+  std::map<std::string, Bytes> added HYADES_GUARDED_BY(mutex);
+  std::map<std::string, SourcePtr> sources HYADES_GUARDED_BY(mutex);
 
   State(AssetResolver& below, MissingTextures missing, SceneLinks links)
       : files(below), lenient(below, missing, std::move(links)) {}
@@ -140,12 +139,12 @@ struct ImportingResolver::State {
   /// stays.
   Result<SourcePtr> source(const std::string& scene) {
     {
-      const std::lock_guard lock(mutex);
+      const MutexLock lock(mutex);
       if (const auto found = sources.find(scene); found != sources.end()) return found->second;
     }
     auto read = read_scene(lenient, scene);
     if (!read) return read;
-    const std::lock_guard lock(mutex);
+    const MutexLock lock(mutex);
     return sources.emplace(scene, *read).first->second;
   }
 
@@ -171,7 +170,7 @@ struct ImportingResolver::State {
   }
 
   std::optional<Bytes> find_added(const std::string& reference) const {
-    const std::lock_guard lock(mutex);
+    const MutexLock lock(mutex);
     const auto found = added.find(reference);
     if (found == added.end()) return std::nullopt;
     return found->second;
@@ -216,7 +215,7 @@ Result<Bytes> ImportingResolver::open_document(const std::string& reference,
   if (auto free = state_->is_free(wanted->scene, resolved); !free) return free.error();
   auto document = state_->document(*wanted);
   if (!document) return document;
-  const std::lock_guard lock(state_->mutex);
+  const MutexLock lock(state_->mutex);
   return state_->added.emplace(resolved, *document).first->second;
 }
 
@@ -244,12 +243,12 @@ bool ImportingResolver::is_on_disk(const std::string& reference) const {
 }
 
 void ImportingResolver::add(const std::string& reference, std::string text) {
-  const std::lock_guard lock(state_->mutex);
+  const MutexLock lock(state_->mutex);
   state_->added[resolve_reference(reference)] = owned(std::move(text));
 }
 
 void ImportingResolver::adopt(const std::string& scene, SourcePtr source) {
-  const std::lock_guard lock(state_->mutex);
+  const MutexLock lock(state_->mutex);
   state_->sources[resolve_reference(scene)] = std::move(source);
 }
 

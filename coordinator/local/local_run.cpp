@@ -70,10 +70,10 @@ core::Status LocalRun::start() {
     const core::MutexLock lock(mutex_);
     job = recover(*contents);
     before_ = progress_;
+    for (int i = 0; i < plan_.threads; ++i) task_queues_.push_back(std::make_unique<TaskQueue>());
   }
   if (core::Status kept = film_store_.start(plan_.tile_size); !kept) return kept;
   for (int i = 0; i < plan_.threads; ++i) {
-    task_queues_.push_back(std::make_unique<TaskQueue>());
     tell(WorkerJoined{WorkerId{static_cast<uint64_t>(i)}, 1, {}, {}});
   }
   carry_out(tell(job));

@@ -133,7 +133,7 @@ class LocalRun : private FilmStore::Listener {
   /// Everything up to the film store.
   mutable core::Mutex mutex_;
   Scheduler scheduler_ HYADES_GUARDED_BY(mutex_);
-  std::vector<std::unique_ptr<TaskQueue>> task_queues_;  ///< their tasks with the lock
+  std::vector<std::unique_ptr<TaskQueue>> task_queues_ HYADES_GUARDED_BY(mutex_);
   std::deque<int32_t> to_load_ HYADES_GUARDED_BY(mutex_);
   core::CondVar load_wake_;
   std::deque<Completed> to_finish_ HYADES_GUARDED_BY(mutex_);

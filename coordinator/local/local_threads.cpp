@@ -64,8 +64,8 @@ void LocalRun::render_loop(int thread) {
 }
 
 std::optional<LocalRun::Task> LocalRun::next_task(int thread) {
-  TaskQueue& queue = *task_queues_[static_cast<size_t>(thread)];
   const core::MutexLock lock(mutex_);
+  TaskQueue& queue = *task_queues_[static_cast<size_t>(thread)];
   if (!ending_ && queue.tasks.empty()) {
     // Asking can only lead to leases and frames to load, which tell_locked() deals with.
     tell_locked(WorkRequested{WorkerId{static_cast<uint64_t>(thread)}, 1});

@@ -8,12 +8,12 @@
 #include <cerrno>
 #include <cstddef>
 #include <filesystem>
-#include <mutex>
 #include <set>
 #include <system_error>
 #include <utility>
 
 #include "core/base/hash.h"
+#include "core/base/mutex.h"
 
 namespace hyades::core {
 namespace {
@@ -105,9 +105,9 @@ Status AssetResolver::may_name(const std::string& /*scene*/, const std::string& 
 
 struct RecordingResolver::State {
   AssetResolver& inner;
-  mutable std::mutex mutex;
-  std::vector<AssetRecord> records;  ///< guarded by mutex
-  std::set<std::string> seen;        ///< guarded by mutex
+  mutable Mutex mutex;
+  std::vector<AssetRecord> records HYADES_GUARDED_BY(mutex);
+  std::set<std::string> seen HYADES_GUARDED_BY(mutex);
 };
 
 RecordingResolver::RecordingResolver(AssetResolver& inner)
@@ -127,14 +127,14 @@ Result<Bytes> RecordingResolver::open_document(const std::string& reference,
 Result<Bytes> RecordingResolver::record(const std::string& resolved, Result<Bytes> bytes) {
   if (!bytes) return bytes;
   {
-    const std::lock_guard lock(state_->mutex);
+    const MutexLock lock(state_->mutex);
     if (!state_->seen.insert(resolved).second) return bytes;
     // The place is taken now, so that the order is that of first opening; hashing large files
     // happens outside the lock.
     state_->records.push_back({resolved, {}, bytes->size()});
   }
   const std::string digest = to_hex(sha256(bytes->span()));
-  const std::lock_guard lock(state_->mutex);
+  const MutexLock lock(state_->mutex);
   for (AssetRecord& record : state_->records) {
     if (record.reference == resolved) record.sha256 = digest;
   }
@@ -150,7 +150,7 @@ Status RecordingResolver::may_name(const std::string& scene, const std::string& 
 }
 
 std::vector<AssetRecord> RecordingResolver::records() const {
-  const std::lock_guard lock(state_->mutex);
+  const MutexLock lock(state_->mutex);
   return state_->records;
 }
 

@@ -6,7 +6,6 @@
 #include <cstdint>
 #include <exception>
 #include <fstream>
-#include <mutex>
 #include <string>
 #include <system_error>
 #include <thread>
@@ -14,6 +13,7 @@
 #include <vector>
 
 #include "core/base/fp_mode.h"
+#include "core/base/mutex.h"
 
 namespace hyades::core {
 namespace {
@@ -36,7 +36,10 @@ class Loop {
     }
   }
 
-  Status status() const { return failed_ ? Status(Error{message_}) : Status(); }
+  Status status() const {
+    const MutexLock lock(mutex_);
+    return failed_ ? Status(Error{message_}) : Status();
+  }
 
  private:
   bool try_one(size_t i) {
@@ -53,7 +56,7 @@ class Loop {
 
   void fail(size_t i, const char* what) {
     stop_.store(true, std::memory_order_relaxed);
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     if (failed_ && failed_index_ < i) return;
     failed_ = true;
     failed_index_ = i;
@@ -65,10 +68,10 @@ class Loop {
   const std::function<void(size_t)>& body_;
   std::atomic<size_t> next_{0};
   std::atomic<bool> stop_{false};
-  std::mutex mutex_;
-  bool failed_ = false;      // guarded by mutex_
-  size_t failed_index_ = 0;  // guarded by mutex_
-  std::string message_;      // guarded by mutex_
+  mutable Mutex mutex_;
+  bool failed_ HYADES_GUARDED_BY(mutex_) = false;
+  size_t failed_index_ HYADES_GUARDED_BY(mutex_) = 0;
+  std::string message_ HYADES_GUARDED_BY(mutex_);
 };
 
 }  // namespace

@@ -4,13 +4,13 @@
 #include <limits>
 #include <map>
 #include <memory>
-#include <mutex>
 #include <set>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "core/base/fp_mode.h"
+#include "core/base/mutex.h"
 #include "core/geometry/build_thresholds.h"
 #include "core/geometry/embree_geometry.h"
 #include "core/geometry/embree_world.h"
@@ -107,7 +107,7 @@ void attach_direct(SceneBuilder& builder, const PlacedObject& object, uint32_t n
 /// Builds worlds with the help of one cache, whose lock somebody holds.
 class WorldBuilder {
  public:
-  explicit WorldBuilder(GeometryCache::State& cache) : cache_(cache) {}
+  explicit WorldBuilder(MadeGeometry& cache) : cache_(cache) {}
 
   Result<std::shared_ptr<const World>> build(std::vector<Placement> placements,
                                              const BuildThresholds& thresholds) {
@@ -278,7 +278,7 @@ class WorldBuilder {
     std::erase_if(cache_.meshes, [](const auto& entry) { return entry.second.expired(); });
   }
 
-  GeometryCache::State& cache_;
+  MadeGeometry& cache_;
   bool inside_instancer_ = false;  ///< what is built is what a instancer copies
   WorldParts parts_;
   std::set<const MeshScene*> used_;  ///< those in parts_.mesh_scenes
@@ -313,8 +313,9 @@ Result<std::shared_ptr<const World>> build_world(std::vector<Placement> placemen
     }
   }
   const FpMode mode;
-  const std::lock_guard lock(cache.state().mutex);
-  return WorldBuilder(cache.state()).build(std::move(placements), thresholds);
+  GeometryCache::State& state = cache.state();
+  const MutexLock lock(state.mutex);
+  return WorldBuilder(state.made).build(std::move(placements), thresholds);
 }
 
 }  // namespace hyades::core

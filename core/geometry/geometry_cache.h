@@ -4,9 +4,9 @@
 #include <cstdint>
 #include <map>
 #include <memory>
-#include <mutex>
 #include <vector>
 
+#include "core/base/mutex.h"
 #include "core/geometry/embree.h"
 #include "core/geometry/placed_object.h"
 #include "core/geometry/world.h"
@@ -48,13 +48,18 @@ inline MeshKey mesh_key(const Shape& shape) {
           shape.deforms() ? shape.reach : 1.0F};
 }
 
-struct GeometryCache::State {
-  std::mutex mutex;  // guards all that follows
+/// What worlds have made that the next one may use again.
+struct MadeGeometry {
   std::map<MeshKey, std::weak_ptr<const MeshScene>> meshes;
   std::weak_ptr<const StillScene> still;
   std::vector<std::weak_ptr<const InstancerScene>> instancers;
   /// What the last world used, so that it outlives that world.
   std::vector<std::shared_ptr<const void>> recent;
+};
+
+struct GeometryCache::State {
+  Mutex mutex;  ///< held while a world is built
+  MadeGeometry made HYADES_GUARDED_BY(mutex);
 };
 
 }  // namespace hyades::core

@@ -5,11 +5,11 @@
 #include <charconv>
 #include <cmath>
 #include <cstddef>
-#include <mutex>
 #include <system_error>
 #include <utility>
 #include <vector>
 
+#include "core/base/mutex.h"
 #include "core/base/text.h"
 #include "core/job/expression_functions.h"
 
@@ -151,6 +151,7 @@ class CompiledExpression : public Expression {
 
   /// Throws mu::ParserError where the text does not compile.
   void compile() {
+    const MutexLock lock(mutex_);
     parser_.Eval();
     if (parser_.GetNumResults() != 1) {
       throw mu::ParserError(mu::ecUNEXPECTED_ARG_SEP, static_cast<int>(text_.find(',')), ",");
@@ -159,7 +160,7 @@ class CompiledExpression : public Expression {
 
   double evaluate(const JobTime& time) const override {
     // muParser computes on a stack inside the parser.
-    const std::lock_guard<std::mutex> lock(mutex_);
+    const MutexLock lock(mutex_);
     seconds_ = time.seconds;
     frame_ = time.frame;
     return parser_.Eval();
@@ -169,11 +170,10 @@ class CompiledExpression : public Expression {
 
  private:
   std::string text_;
-  mutable std::mutex mutex_;
-  // Guarded by mutex_:
-  mutable double seconds_ = 0.0;
-  mutable double frame_ = 1.0;
-  Parser parser_;
+  mutable Mutex mutex_;
+  mutable double seconds_ HYADES_GUARDED_BY(mutex_) = 0.0;
+  mutable double frame_ HYADES_GUARDED_BY(mutex_) = 1.0;
+  Parser parser_ HYADES_GUARDED_BY(mutex_);
 };
 
 std::vector<std::string> known_names() {

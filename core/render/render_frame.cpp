@@ -4,11 +4,11 @@
 #include <atomic>
 #include <cstdint>
 #include <cstdlib>
-#include <mutex>
 #include <thread>
 #include <vector>
 
 #include "core/base/hash.h"
+#include "core/base/mutex.h"
 
 namespace hyades::core {
 namespace {
@@ -46,13 +46,13 @@ RenderedFrame render_frame(const FrameRenderer& renderer, const PixelRect& windo
                            int32_t frame, const RenderFrameOptions& options) {
   const std::vector<Unit> units = plan(window, samples, frame, options);
   RenderedFrame result{Film(renderer.layout(), window), {}};
-  std::mutex mutex;  // guards result and done
+  Mutex mutex;
   size_t done = 0;
   std::atomic<size_t> next{0};
   const auto work = [&] {
     for (size_t i = next++; i < units.size(); i = next++) {
       const RenderedUnit unit = renderer.render(units[i]);
-      const std::lock_guard lock(mutex);
+      const MutexLock lock(mutex);
       // Units of one plan cannot overlap, so a refusal would be a bug in plan() itself.
       if (!result.film.merge(unit.film)) std::abort();
       result.counters.add(unit.counters);

@@ -3,9 +3,9 @@
 #include <functional>
 #include <map>
 #include <memory>
-#include <mutex>
 #include <type_traits>
 
+#include "core/base/mutex.h"
 #include "core/base/result.h"
 
 namespace hyades::core {
@@ -23,7 +23,7 @@ class MapOfMade {
   template <class Make>
   Result<Pointer> get(const Key& key, const Make& make) {
     const std::shared_ptr<Slot> slot = slot_of(key);
-    const std::lock_guard lock(slot->mutex);
+    const MutexLock lock(slot->mutex);
     if (Pointer value = alive(slot->value)) return value;
     Result<Pointer> made = make();
     if (made) slot->value = *made;
@@ -34,9 +34,9 @@ class MapOfMade {
   /// made.
   template <class Visit>
   void for_each(const Visit& visit) const {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     for (const auto& [key, slot] : slots_) {
-      const std::lock_guard slot_lock(slot->mutex);
+      const MutexLock slot_lock(slot->mutex);
       if (const Pointer value = alive(slot->value)) visit(*value);
     }
   }
@@ -45,15 +45,15 @@ class MapOfMade {
   using Weak = std::weak_ptr<const Value>;
 
   struct Slot {
-    std::mutex mutex;  ///< held while the value is made
-    Held value;        ///< guarded by mutex
+    Mutex mutex;  ///< held while the value is made
+    Held value HYADES_GUARDED_BY(mutex);
   };
 
   static Pointer alive(const Pointer& held) { return held; }
   static Pointer alive(const Weak& held) { return held.lock(); }
 
   std::shared_ptr<Slot> slot_of(const Key& key) {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     auto& slot = slots_[key];
     if (slot) return slot;
     slot = std::make_shared<Slot>();
@@ -63,16 +63,16 @@ class MapOfMade {
   }
 
   /// Slots that nobody else holds, nor can get hold of meanwhile, and whose values are gone.
-  void drop_unused() {
+  void drop_unused() HYADES_REQUIRES(mutex_) {
     std::erase_if(slots_, [](const auto& row) {
       if (row.second.use_count() > 1) return false;
-      const std::lock_guard slot_lock(row.second->mutex);
+      const MutexLock slot_lock(row.second->mutex);
       return row.second->value.expired();
     });
   }
 
-  mutable std::mutex mutex_;
-  std::map<Key, std::shared_ptr<Slot>, Less> slots_;  ///< guarded by mutex_
+  mutable Mutex mutex_;
+  std::map<Key, std::shared_ptr<Slot>, Less> slots_ HYADES_GUARDED_BY(mutex_);
 };
 
 /// Kept as long as the map is.

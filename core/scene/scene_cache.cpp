@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "core/base/machine.h"
+#include "core/base/mutex.h"
 #include "core/base/text.h"
 #include "core/base/udim.h"
 #include "core/geometry/read_hair.h"
@@ -36,7 +37,7 @@ Result<std::shared_ptr<const MeshParts>> SceneCache::parts_of(const std::string&
   if (!of_frames) return mesh_parts_.get(file, make);
   auto parts = frame_parts_.get(file, make);
   if (!parts) return parts;
-  const std::lock_guard lock(recent_parts_mutex_);
+  const MutexLock lock(recent_parts_mutex_);
   if (std::find(recent_parts_.begin(), recent_parts_.end(), *parts) == recent_parts_.end()) {
     recent_parts_.push_back(*parts);
     if (recent_parts_.size() > kRecentParts) recent_parts_.pop_front();
@@ -148,7 +149,7 @@ Result<std::shared_ptr<const Gobo>> SceneCache::gobo(const std::string& file) {
 }
 
 std::shared_ptr<const Sky> SceneCache::sky(const SkySettings& settings) {
-  const std::lock_guard lock(sky_mutex_);
+  const MutexLock lock(sky_mutex_);
   if (!sky_ || !(settings == sky_settings_)) {
     sky_settings_ = settings;
     sky_ = std::make_shared<const Sky>(make_sky(settings));
@@ -208,7 +209,7 @@ MeshClosure SceneCache::closure(const std::shared_ptr<const TriangleMesh>& mesh)
 }
 
 Result<std::shared_ptr<const World>> SceneCache::world(std::vector<Placement> placements) {
-  const std::lock_guard lock(world_mutex_);
+  const MutexLock lock(world_mutex_);
   if (world_ && same_placements(placements, world_placements_)) return world_;
   world_placements_ = placements;
   auto built = build_world(std::move(placements), geometry_);

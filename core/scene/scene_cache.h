@@ -4,12 +4,12 @@
 #include <cstddef>
 #include <deque>
 #include <memory>
-#include <mutex>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "core/base/assets.h"
+#include "core/base/mutex.h"
 #include "core/geometry/closed_mesh.h"
 #include "core/geometry/curve_set.h"
 #include "core/geometry/read_mesh.h"
@@ -153,9 +153,9 @@ class SceneCache {
   WeakMap<std::string, MeshParts> frame_parts_;
   OnceMap<std::string, std::vector<PlaceMatrix>> places_;
   OnceMap<std::pair<std::string, CurveBasis>, CurveSet> curves_;
-  std::mutex recent_parts_mutex_;
-  /// So that the parts of a frame's file come from one reading. Guarded by recent_parts_mutex_.
-  std::deque<std::shared_ptr<const MeshParts>> recent_parts_;
+  Mutex recent_parts_mutex_;
+  /// So that the parts of a frame's file come from one reading.
+  std::deque<std::shared_ptr<const MeshParts>> recent_parts_ HYADES_GUARDED_BY(recent_parts_mutex_);
   WeakMap<std::string, TriangleMesh> made_meshes_;
   WeakMap<std::string, TriangleMesh> displaced_;
   /// By meshes that it does not keep.
@@ -168,15 +168,13 @@ class SceneCache {
   OnceMap<std::pair<std::string, std::string>, VdbGrid<float>> vdb_numbers_;
   OnceMap<std::pair<std::string, std::string>, VdbGrid<Rgb>> vdb_colors_;
   OnceMap<std::pair<std::string, std::string>, VdbDensity> vdb_densities_;
-  std::mutex sky_mutex_;
-  // Guarded by sky_mutex_.
-  SkySettings sky_settings_;
-  std::shared_ptr<const Sky> sky_;
+  Mutex sky_mutex_;
+  SkySettings sky_settings_ HYADES_GUARDED_BY(sky_mutex_);
+  std::shared_ptr<const Sky> sky_ HYADES_GUARDED_BY(sky_mutex_);
   GeometryCache geometry_;
-  std::mutex world_mutex_;
-  // Guarded by world_mutex_.
-  std::vector<Placement> world_placements_;
-  std::shared_ptr<const World> world_;
+  Mutex world_mutex_;
+  std::vector<Placement> world_placements_ HYADES_GUARDED_BY(world_mutex_);
+  std::shared_ptr<const World> world_ HYADES_GUARDED_BY(world_mutex_);
 };
 
 }  // namespace hyades::core

@@ -9,7 +9,6 @@
 #include <cstddef>
 #include <filesystem>
 #include <map>
-#include <mutex>
 #include <span>
 #include <system_error>
 #include <utility>
@@ -18,6 +17,7 @@
 
 #include "core/base/io_reason.h"
 #include "core/base/machine.h"
+#include "core/base/mutex.h"
 #include "core/base/posix_file.h"
 #include "core/base/text.h"
 
@@ -45,7 +45,7 @@ class TexelStore::CommonFile {
   Result<uint64_t> take(size_t size) {
     if (!file_.valid()) return Error{"it could not be made"};
     const uint64_t pages = whole_pages(size);
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     if (taken_ + pages > half_of_free(file_) + taken_ / 2) {
       return Error{
           "it would take more than half of what is free on its disk (TMPDIR names another)"};
@@ -65,7 +65,7 @@ class TexelStore::CommonFile {
     return begin;
   }
   void give_back(uint64_t begin) {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     const auto part = parts_.find(begin);
     const uint64_t size = part->second - begin;
     // Its room on the disk is free again, where the file system knows holes.
@@ -83,9 +83,10 @@ class TexelStore::CommonFile {
 
   const Descriptor file_;
   const uint64_t most_;  ///< bytes, that the file's end may come to
-  std::mutex mutex_;
-  std::map<uint64_t, uint64_t> parts_;  ///< guarded by mutex_: ends of what is in use, by begin
-  uint64_t taken_ = 0;                  ///< guarded by mutex_: bytes of these
+  Mutex mutex_;
+  /// Ends of what is in use, by begin.
+  std::map<uint64_t, uint64_t> parts_ HYADES_GUARDED_BY(mutex_);
+  uint64_t taken_ HYADES_GUARDED_BY(mutex_) = 0;  ///< bytes of these
 };
 
 /// Room for bytes in a file; what of it is in use has to be given back.

@@ -12,6 +12,7 @@
 #include <system_error>
 #include <utility>
 
+#include "core/base/mutex.h"
 #include "core/geometry/write_ply.h"
 #include "import/gltf/accessor.h"
 #include "import/gltf/geometry.h"
@@ -157,7 +158,7 @@ std::string GltfMeshFiles::folder(float fps, size_t animation, bool loop) const 
 }
 
 Result<std::shared_ptr<const GltfClip>> GltfMeshFiles::clip(size_t index) const {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   std::shared_ptr<const GltfClip>& known = clips_[index];
   if (known == nullptr) {
     auto read = read_clip(*model_, index);

@@ -4,13 +4,13 @@
 #include <cstdint>
 #include <map>
 #include <memory>
-#include <mutex>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
 
+#include "core/base/mutex.h"
 #include "import/gltf/animation.h"
 #include "import/gltf/model.h"
 
@@ -66,8 +66,8 @@ class GltfMeshFiles {
   std::map<std::string, size_t> by_name_;
   std::map<std::pair<int, size_t>, size_t> of_node_;
   std::vector<std::string> clip_folders_;
-  mutable std::mutex mutex_;
-  mutable std::map<size_t, std::shared_ptr<const GltfClip>> clips_;  ///< guarded by mutex_
+  mutable Mutex mutex_;
+  mutable std::map<size_t, std::shared_ptr<const GltfClip>> clips_ HYADES_GUARDED_BY(mutex_);
 };
 
 /// The geometry of a mesh file: as it is; or, where it belongs to a node, morphed and moved by its

@@ -4,13 +4,13 @@
 #include <cstddef>
 #include <cstdint>
 #include <map>
-#include <mutex>
 #include <utility>
 #include <vector>
 
 #include <fmt/format.h>
 
 #include "core/base/machine.h"
+#include "core/base/mutex.h"
 #include "core/base/text.h"
 #include "core/job/read_sections.h"
 #include "core/job/yaml_build.h"
@@ -49,7 +49,7 @@ class ScriptSource : public SceneSource {
 
   Result<SceneSections> sections(const SceneRequest& request) const override {
     const std::string key = key_of(request);
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     if (const auto known = told_.find(key); known != told_.end()) return known->second;
     auto tree = tree_at(request);
     if (!tree) return tree.error();
@@ -59,7 +59,7 @@ class ScriptSource : public SceneSource {
   }
 
   Result<Bytes> made_file(const std::string& name) const override {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     const auto found = made_.find(name);
     if (found != made_.end()) return found->second;
     return Error{script_ + ": '" + name + "' is not made of it"};
@@ -137,11 +137,10 @@ class ScriptSource : public SceneSource {
 
   AssetResolver& files_;
   std::string script_;
-  mutable std::mutex mutex_;
-  // Guarded by mutex_.
-  mutable std::map<std::string, SceneSections> told_;
-  mutable std::map<std::string, Bytes> made_;
-  mutable size_t made_bytes_ = 0;
+  mutable Mutex mutex_;
+  mutable std::map<std::string, SceneSections> told_ HYADES_GUARDED_BY(mutex_);
+  mutable std::map<std::string, Bytes> made_ HYADES_GUARDED_BY(mutex_);
+  mutable size_t made_bytes_ HYADES_GUARDED_BY(mutex_) = 0;
 };
 
 }  // namespace
