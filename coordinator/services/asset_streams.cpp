@@ -1,4 +1,5 @@
 // Files by content, up and down.
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -142,12 +143,16 @@ void add_asset_streams(Service& service) {
           return nullptr;
         }
         const auto open = [&controller,
-                           name = core::to_hex(*digest)](core::Bytes& file) -> grpc::Status {
+                           name = core::to_hex(*digest)](FileToSend& file) -> grpc::Status {
           bool busy = false;
           auto bytes = controller.assets().read(name, &busy);
           if (busy) return still_checked();
           if (!bytes) return {grpc::StatusCode::NOT_FOUND, bytes.error().message};
-          file = std::move(*bytes);
+          file.size = bytes->size();
+          file.read = [bytes = std::move(*bytes)](uint64_t offset, std::span<std::byte> into) {
+            std::ranges::copy(bytes.span().subspan(offset, into.size()), into.begin());
+            return grpc::Status::OK;
+          };
           return grpc::Status::OK;
         };
         return new FileStream(context, service.executors().files, open, request.offset());

@@ -1,4 +1,5 @@
 // Films of frames in work.
+#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <cstddef>
@@ -103,7 +104,12 @@ class FilmStream final : public Producer<v1::FilmPart> {
       part.mutable_header()->set_size(bytes_.size());
       return Step::message;
     }
-    return take_chunk(bytes_, offset_, *part.mutable_chunk()) ? Step::message : Step::end;
+    if (offset_ >= bytes_.size()) return Step::end;
+    const uint64_t count = std::min(kFilePieceBytes, bytes_.size() - offset_);
+    part.mutable_chunk()->set_offset(offset_);
+    part.mutable_chunk()->set_data(bytes_.data() + offset_, count);
+    offset_ += count;
+    return Step::message;
   }
 
   Controller& controller_;

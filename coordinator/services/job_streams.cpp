@@ -1,9 +1,11 @@
 // What comes as a stream of a job: its changes, outputs and log, and its files.
 #include <algorithm>
+#include <cstddef>
 #include <cstdint>
 #include <deque>
 #include <filesystem>
 #include <set>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -12,7 +14,7 @@
 
 #include "coordinator/controller/controller.h"
 #include "coordinator/operations/file_transfer.h"
-#include "coordinator/services/output_stream.h"
+#include "coordinator/services/file_stream.h"
 #include "coordinator/services/service.h"
 #include "core/base/result.h"
 #include "farm/wire_status.h"
@@ -268,14 +270,21 @@ class LogLines final : public RowFollower<v1::LogLine, StoredLine> {
   const std::set<int32_t> frames_;  ///< none: all
 };
 
-/// The file of an output as it was listed.
-grpc::Status fetch(Controller& controller, const v1::FetchRequest& request, core::MadeFile& file) {
+/// The file of an output as it was listed. DATA_LOSS where it changes meanwhile.
+grpc::Status open(Controller& controller, const v1::FetchRequest& request, FileToSend& file) {
   StoredOutput output;
-  grpc::Status opened = open_output(controller, request.job(), request.path(), output, file);
-  const bool other = !request.sha256().empty() && request.sha256() != output.sha256;
-  if (!opened.ok() || !other) return opened;
-  return {grpc::StatusCode::FAILED_PRECONDITION,
-          request.path() + " has been rendered again: fetch it from its beginning"};
+  core::MadeFile made;
+  grpc::Status opened = open_output(controller, request.job(), request.path(), output, made);
+  if (!opened.ok()) return opened;
+  if (!request.sha256().empty() && request.sha256() != output.sha256) {
+    return {grpc::StatusCode::FAILED_PRECONDITION,
+            request.path() + " has been rendered again: fetch it from its beginning"};
+  }
+  file.size = made.size();
+  file.read = [made, path = request.path()](uint64_t offset, std::span<std::byte> into) {
+    return made.read(offset, into) ? grpc::Status::OK : damaged_output(path);
+  };
+  return grpc::Status::OK;
 }
 
 }  // namespace
@@ -311,12 +320,10 @@ void add_job_streams(Service& service) {
   service.add_server_stream<v1::FetchRequest>(
       "Jobs/Fetch",
       [&](Context& context, const Caller& /*caller*/, v1::FetchRequest&& request, grpc::Status&) {
-        return new OutputStream(
+        return new FileStream(
             context, files,
-            [&controller, request](core::MadeFile& file) {
-              return fetch(controller, request, file);
-            },
-            request.path(), request.offset());
+            [&controller, request](FileToSend& file) { return open(controller, request, file); },
+            request.offset());
       });
 }
 
