@@ -26,6 +26,9 @@ Result<Image> decode_netpbm(std::span<const std::byte> file, bool srgb, const Im
 Result<Image> decode_pfm(std::span<const std::byte> file, bool srgb, const ImageLimits& limits);
 Result<Image> decode_tga(std::span<const std::byte> file, bool srgb, const ImageLimits& limits);
 
+/// A lamp's photometry as a lat-long picture: see read_image.
+Result<Image> decode_ies(std::span<const std::byte> file, bool srgb, const ImageLimits& limits);
+
 /// Whether a file is a TGA picture by all that its header says: the format has no mark of its own.
 bool looks_like_tga(std::span<const std::byte> file);
 

@@ -48,6 +48,8 @@ constexpr Format kFormats[] = {
     {"Pf", decode_pfm, "PFM", false},
     {"P6", decode_netpbm, "PPM", true},
     {"P5", decode_netpbm, "PGM", true},
+    {"IESNA", decode_ies, "IES", false},
+    {"IES:LM-63", decode_ies, "IES", false},
 };
 
 constexpr Format kTga = {"", decode_tga, "TGA", true};
@@ -124,7 +126,7 @@ Result<Image> read_image(const Bytes& bytes, const std::string& name, ColorSpace
   if (file.empty()) return Error{name + ": the file is empty"};
   const Format* format = format_of(file);
   constexpr const char* kExpected =
-      "expected PNG, JPEG, TIFF, TGA, BMP, QOI, PPM, PFM, Radiance HDR or OpenEXR";
+      "expected PNG, JPEG, TIFF, TGA, BMP, QOI, PPM, PFM, Radiance HDR, OpenEXR or IES";
   if (format == nullptr) return Error{fmt::format("{}: not a known picture; {}", name, kExpected)};
   if (format->decode == nullptr) {
     return Error{fmt::format("{}: {} files are not read; {}", name, format->name, kExpected)};

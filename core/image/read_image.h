@@ -27,12 +27,15 @@ struct ImageLimits {
 /// Decodes PNG (1-16 bits), JPEG, TIFF (grey or RGB of 8, 16 or 32 floating bits; the first
 /// picture), TGA, BMP (not packed), QOI, binary PPM and PGM, PFM, Radiance HDR (flat and RLE) or
 /// OpenEXR (any compression, half or float, scanline or tiled), told apart by their first bytes,
-/// TGA by its whole header. Colour is linear Rec.709 on return;
-/// alpha stays straight and is never decoded. Grey files have channel "Y"[,"A"], colour ones
-/// "R","G","B"[,"A"]; an EXR keeps its own channel names, R G B A Y first (first part, all of its
-/// data window; subsampled channels and deep data are refused). EXPOSURE of a Radiance file is
-/// undone, so that pixels are radiances. Files that are truncated, damaged, CMYK or beyond `limits`
-/// are errors. `name` is used in errors only. Thread-safe.
+/// TGA by its whole header. IES profiles of lamps (LM-63 with its first line, photometry of type C)
+/// become lat-long pictures (EnvironmentMap) of 720 x 360 pixels, straight down being -y and
+/// horizontal angles going from x towards -z: of 4 pi / 177.83 times the candela, so that a point
+/// light of 1 W with it is the lamp, at the 177.83 lm/W of illuminant D65 that Cycles counts with.
+/// Colour is linear Rec.709 on return; alpha stays straight and is never decoded. Grey files have
+/// channel "Y"[,"A"], colour ones "R","G","B"[,"A"]; an EXR keeps its own channel names, R G B A Y
+/// first (first part, all of its data window; subsampled channels and deep data are refused).
+/// EXPOSURE of a Radiance file is undone, so that pixels are radiances. Files that are truncated,
+/// damaged, CMYK or beyond `limits` are errors. `name` is used in errors only. Thread-safe.
 Result<Image> read_image(const Bytes& bytes, const std::string& name,
                          ColorSpace space = ColorSpace::automatic, const ImageLimits& limits = {});
 

@@ -264,7 +264,7 @@ TEST(Hostile, UnknownFilesAreNamed) {
   };
   EXPECT_EQ(error(""), "x: the file is empty");
   const std::string expected =
-      "; expected PNG, JPEG, TIFF, TGA, BMP, QOI, PPM, PFM, Radiance HDR or OpenEXR";
+      "; expected PNG, JPEG, TIFF, TGA, BMP, QOI, PPM, PFM, Radiance HDR, OpenEXR or IES";
   EXPECT_EQ(error("hello"), "x: not a known picture" + expected);
   EXPECT_EQ(error("GIF89a..."), "x: GIF files are not read" + expected);
   const Result<Image> missing = read_image_file("no/such/file.png");
