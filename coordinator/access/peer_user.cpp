@@ -8,6 +8,7 @@
 #include <net/if.h>
 #include <netinet/in.h>
 #include <sys/socket.h>
+#include <unistd.h>
 
 #include <array>
 #include <charconv>
@@ -101,7 +102,7 @@ std::optional<uid_t> holder(const Place& peer, const Place& own) {
   for (uint32_t& any : question.wanted.id.idiag_cookie) any = INET_DIAG_NOCOOKIE;
   const auto told = ask_kernel(question);
   if (!told || told->head.nlmsg_type != SOCK_DIAG_BY_FAMILY ||
-      told->found.idiag_state != kEstablished) {
+      told->found.idiag_state != kEstablished || told->found.idiag_inode == 0) {
     return std::nullopt;
   }
   return told->found.idiag_uid;
@@ -149,13 +150,14 @@ std::optional<uid_t> read_table(const std::string& peer, const std::string& own)
     std::getline(lines, line);  // what the columns are
     while (std::getline(lines, line)) {
       std::istringstream words(line);
-      std::string number, local, remote, state, queues, timer, retransmits;
+      std::string number, local, remote, state, queues, timer, retransmits, timeout;
       uid_t user = 0;
-      if (!(words >> number >> local >> remote >> state >> queues >> timer >> retransmits >>
-            user)) {
+      uint64_t inode = 0;
+      if (!(words >> number >> local >> remote >> state >> queues >> timer >> retransmits >> user >>
+            timeout >> inode)) {
         continue;
       }
-      if (state != "01") continue;  // established
+      if (state != "01" || inode == 0) continue;  // not established, or nobody's
       const auto from = read_row(local);
       const auto to = read_row(remote);
       if (from && to && text_of(*from) == peer && text_of(*to) == own) return user;
@@ -198,6 +200,21 @@ std::string own_end(int socket) {
     return {};
   }
   return text_of(place);
+}
+
+Neighbour neighbour_at(const std::string& peer, int socket) {
+  const std::string own = own_end(socket);
+  const std::string from = split_address(peer).host;
+  const bool loopback = from.starts_with("127.") || from == "::1";
+  if (!loopback && from != split_address(own).host) return {neighbourhood_of(peer)};
+  const auto there = read_place(peer);
+  const auto here = read_place(own);
+  const bool whole = there && here && there->family == here->family;
+  const auto user = whole ? holder(*there, *here) : std::nullopt;
+  if (!user) return {"this machine"};
+  const bool is_own = *user == ::geteuid() || *user == 0;
+  if (is_own) return {"this user at " + from, true};
+  return {"user " + std::to_string(*user)};
 }
 
 }  // namespace hyades::coordinator

@@ -10,8 +10,9 @@ namespace hyades::coordinator {
 
 /// The user whose process holds the other end of the TCP connection from `peer`, an address of this
 /// machine, to `own`, that address of ours at which it came in; both as address_text() has them.
-/// Nothing where there is no such connection, or it is closing: what nobody holds any more counts
-/// as root's. It says nothing of other connections from there: to each address of ours another
+/// Nothing where there is no such connection, or no process holds that end any more: until Linux
+/// 6.16 the kernel says of such ends, which close() can leave open (of MPTCP, say), that they are
+/// root's. It says nothing of other connections from there: to each address of ours another
 /// user's may come from the same port, so that `own` has to be this connection's (own_end()).
 ///
 /// The kernel is asked anew each time, for a port may be another user's at once. It finds one
@@ -24,6 +25,18 @@ std::optional<uid_t> user_of_peer(const std::string& peer, const std::string& ow
 /// has ended the connection. Where it is there both before and after user_of_peer() was asked, that
 /// has spoken of this connection: the kernel has no other between the same two ends meanwhile.
 std::string own_end(int socket);
+
+/// Who counts as one caller where connections are bounded.
+struct Neighbour {
+  std::string name;
+  bool is_own_user = false;  ///< this process's user or root, on this machine
+};
+
+/// Whose the accepted `socket` is, from `peer` (as address_text() has it): of another machine
+/// neighbourhood_of() the address; of this one, whose users share its addresses, the user who has
+/// the other end, however many of its addresses he comes by, and of our own user each address.
+/// Those of whom the kernel does not say so in microseconds are one caller.
+Neighbour neighbour_at(const std::string& peer, int socket);
 
 /// own_end() of the connection by which somebody calls.
 using OwnEnd = std::function<std::string()>;

@@ -322,7 +322,7 @@ void ConnectionGate::take(core::Descriptor socket, std::string address) {
   }
   const Id id = next_id_++;
   if (!watch(poll_, EPOLL_CTL_ADD, connection.socket, EPOLLRDHUP | EPOLLET, id)) return;
-  strangers_.come(id, neighbourhood_of(connection.address));
+  strangers_.come(id, neighbour_at(connection.address, connection.socket.get()).name);
   by_address_[connection.address] = id;  // one before it from there was known, and is ending
   connections_.emplace(id, std::move(connection));
 }

@@ -82,9 +82,10 @@ class ConnectionOver final : public Connection,
                              public std::enable_shared_from_this<ConnectionOver<Stream>> {
  public:
   template <class... Arguments>
-  ConnectionOver(ConnectionWorld& world, std::shared_ptr<asio::ssl::context> tls,
+  ConnectionOver(ConnectionWorld& world, Neighbour owner, std::shared_ptr<asio::ssl::context> tls,
                  Arguments&&... stream)
       : world_(world),
+        owner_(std::move(owner)),
         tls_(std::move(tls)),
         stream_(std::forward<Arguments>(stream)...),
         timer_(stream_.get_executor()) {}
@@ -95,8 +96,7 @@ class ConnectionOver final : public Connection,
     ErrorCode unknown;
     const auto from = tcp(stream_).socket().remote_endpoint(unknown);
     if (!unknown) address_ = address_text(from.address().to_string(), std::to_string(from.port()));
-    from_ = from.address();
-    world_.count.enter(from_);
+    world_.count.enter(owner_);
     if constexpr (std::is_same_v<Stream, Tls>) {
       tcp(stream_).expires_after(kBegin);
       stream_.async_handshake(asio::ssl::stream_base::server, [me = self()](ErrorCode error) {
@@ -500,18 +500,18 @@ class ConnectionOver final : public Connection,
     tcp(stream_).socket().close(ignored);
     if (world_.open.erase(self()) == 0) return;
     world_.meters.http_connections().Decrement();
-    world_.count.leave(from_);
+    world_.count.leave(owner_);
   }
 
   ConnectionWorld& world_;
+  const Neighbour owner_;                          ///< whom it is counted for
   const std::shared_ptr<asio::ssl::context> tls_;  ///< outlives the stream
   Stream stream_;
   beast::flat_buffer buffer_{kMostUnparsed};
   std::optional<http::request_parser<http::string_body>> parser_;
   WebRequest request_;
-  std::string address_;     ///< of the other side, as address_text() has it
-  asio::ip::address from_;  ///< of the other side, without the port
-  Caller caller_;           ///< of the request in work
+  std::string address_;  ///< of the other side, as address_text() has it
+  Caller caller_;        ///< of the request in work
   std::unique_ptr<Visit> visit_;
   std::unique_ptr<OwnerConnections::Entry> entry_;       ///< while its answer takes its time
   std::optional<farm::ByteBudget::Share> body_share_;    ///< of its body
@@ -538,13 +538,14 @@ class ConnectionOver final : public Connection,
 
 }  // namespace
 
-std::shared_ptr<Connection> make_connection(asio::ip::tcp::socket socket,
+std::shared_ptr<Connection> make_connection(asio::ip::tcp::socket socket, Neighbour owner,
                                             const std::shared_ptr<asio::ssl::context>& tls,
                                             ConnectionWorld& world) {
   if (tls) {
-    return std::make_shared<ConnectionOver<Tls>>(world, tls, std::move(socket), *tls);
+    return std::make_shared<ConnectionOver<Tls>>(world, std::move(owner), tls, std::move(socket),
+                                                 *tls);
   }
-  return std::make_shared<ConnectionOver<Plain>>(world, tls, std::move(socket));
+  return std::make_shared<ConnectionOver<Plain>>(world, std::move(owner), tls, std::move(socket));
 }
 
 }  // namespace hyades::coordinator

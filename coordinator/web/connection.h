@@ -75,8 +75,9 @@ struct ConnectionWorld {
   std::chrono::milliseconds send_patience{60'000};
 };
 
-/// A connection over an accepted socket. `tls`: null for plain text. The world outlives it.
-std::shared_ptr<Connection> make_connection(boost::asio::ip::tcp::socket socket,
+/// A connection over an accepted socket. `owner`: whom it is counted for. `tls`: null for plain
+/// text. The world outlives it.
+std::shared_ptr<Connection> make_connection(boost::asio::ip::tcp::socket socket, Neighbour owner,
                                             const std::shared_ptr<boost::asio::ssl::context>& tls,
                                             ConnectionWorld& world);
 

@@ -2,33 +2,26 @@
 
 #include <algorithm>
 
-#include "coordinator/access/address.h"
-
 namespace hyades::coordinator {
-namespace asio = boost::asio;
 
-bool ConnectionCount::may_come(const asio::ip::address& from) const {
+bool ConnectionCount::may_come(const Neighbour& owner) const {
   if (open_ >= most_) return false;
-  if (from.is_loopback()) return true;
-  const auto known = open_of_.find(owner_of(from));
+  if (owner.is_own_user) return true;
+  const auto known = open_of_.find(owner.name);
   if (known == open_of_.end()) return true;
   return known->second < std::max(sure_, std::min(most_of_one_, (most_ - open_) / 4));
 }
 
-void ConnectionCount::enter(const asio::ip::address& from) {
+void ConnectionCount::enter(const Neighbour& owner) {
   ++open_;
-  ++open_of_[owner_of(from)];
+  ++open_of_[owner.name];
 }
 
-void ConnectionCount::leave(const asio::ip::address& from) {
-  const auto known = open_of_.find(owner_of(from));
+void ConnectionCount::leave(const Neighbour& owner) {
+  const auto known = open_of_.find(owner.name);
   if (known == open_of_.end()) return;
   --open_;
   if (--known->second == 0) open_of_.erase(known);
-}
-
-std::string ConnectionCount::owner_of(const asio::ip::address& address) {
-  return neighbourhood_of(address_text(address.to_string(), "0"));
 }
 
 }  // namespace hyades::coordinator

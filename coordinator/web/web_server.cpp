@@ -5,18 +5,22 @@
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
+#include <deque>
 #include <exception>
 #include <functional>
 #include <optional>
+#include <set>
 #include <thread>
 #include <utility>
 
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/ip/tcp.hpp>
+#include <boost/asio/ip/v6_only.hpp>
 #include <boost/asio/steady_timer.hpp>
 
 #include "coordinator/access/address.h"
 #include "coordinator/access/authority.h"
+#include "coordinator/access/peer_user.h"
 #include "coordinator/controller/controller.h"
 #include "coordinator/meters/meters.h"
 #include "coordinator/operations/operation.h"
@@ -63,6 +67,33 @@ void close_on_exec(Socket& socket) {
 }  // namespace
 
 struct WebServer::Parts {
+  /// An address at which others may connect.
+  struct Door {
+    explicit Door(asio::io_context& network) : acceptor(network), again(network) {}
+
+    /// `alone`: there is no other, so that of all addresses (::) those of IPv4 are meant too.
+    boost::system::error_code open(const tcp::endpoint& endpoint, bool alone) {
+      boost::system::error_code error;
+      acceptor.open(endpoint.protocol(), error);
+      if (!error) close_on_exec(acceptor);
+      if (!error && !alone && endpoint.protocol() == tcp::v6()) {
+        acceptor.set_option(asio::ip::v6_only(true), error);
+      }
+      if (!error) acceptor.set_option(tcp::acceptor::reuse_address(true), error);
+      if (!error) acceptor.bind(endpoint, error);
+      if (!error) acceptor.non_blocking(true, error);
+      if (!error) acceptor.listen(asio::socket_base::max_listen_connections, error);
+      return error;
+    }
+    uint16_t own_port() const {
+      boost::system::error_code error;
+      return acceptor.local_endpoint(error).port();
+    }
+
+    tcp::acceptor acceptor;
+    asio::steady_timer again;
+  };
+
   Parts(Controller& controller, Authority& known, std::vector<std::string> names, bool secure,
         Serves serves)
       : meters(controller.meters()),
@@ -88,8 +119,6 @@ struct WebServer::Parts {
               answers,
               ConnectionCount(kMostConnections / (secure ? kFewerWithTls : 1),
                               kMostOfAddress / (secure ? kFewerWithTls : 1), kSureOfAddress)},
-        acceptor(network),
-        again(network),
         sweep(network),
         look(network) {
     add_health_routes(router, controller, executors);
@@ -172,59 +201,71 @@ struct WebServer::Parts {
     if (AuditLog* log = authority.audit()) log->refuse(caller, rule.action, why);
   }
 
+  /// At all addresses that the name stands for: at one that we left another user could take our
+  /// place. Only ::1 may be missing where others are there.
   core::Status listen(const std::string& address) {
     const auto [host, port] = split_address(address);
     boost::system::error_code error;
     tcp::resolver resolver(network);
     const auto found = resolver.resolve(
         host, port, tcp::resolver::passive | tcp::resolver::numeric_service, error);
-    if (!error) {
-      const tcp::endpoint endpoint = found.begin()->endpoint();
-      acceptor.open(endpoint.protocol(), error);
-      if (!error) close_on_exec(acceptor);
-      if (!error) acceptor.set_option(tcp::acceptor::reuse_address(true), error);
-      if (!error) acceptor.bind(endpoint, error);
-      if (!error) acceptor.non_blocking(true, error);
-      if (!error) acceptor.listen(asio::socket_base::max_listen_connections, error);
+    std::set<tcp::endpoint> all;
+    for (const auto& one : found) all.insert(one.endpoint());
+    for (tcp::endpoint endpoint : all) {
+      if (!doors.empty() && endpoint.port() == 0) endpoint.port(doors.front().own_port());
+      doors.emplace_back(network);
+      error = doors.back().open(endpoint, all.size() == 1);
+      if (!error) continue;
+      doors.pop_back();
+      const bool may_miss = all.size() > 1 && error != asio::error::address_in_use &&
+                            endpoint.address() == asio::ip::address_v6::loopback();
+      if (!may_miss) break;
+      error.clear();
     }
+    if (!error && doors.empty()) error = asio::error::host_not_found;
     if (error) {
       return core::Error{address + ": cannot listen there (" + error.message() + ")"};
     }
     return {};
   }
 
-  void accept() {
-    acceptor.async_wait(tcp::acceptor::wait_read, [this](boost::system::error_code error) {
-      if (error == asio::error::operation_aborted) return;
-      if (!error) error = accept_all();
-      if (!error) return accept();
-      // No descriptors left, say.
-      again.expires_after(kAcceptAgain);
-      again.async_wait([this](boost::system::error_code) { accept(); });
-    });
+  void accept(Door& door) {
+    door.acceptor.async_wait(
+        tcp::acceptor::wait_read, [this, &door](boost::system::error_code error) {
+          if (error == asio::error::operation_aborted) return;
+          if (!error) error = accept_all(door.acceptor);
+          if (!error) return accept(door);
+          // No descriptors left, say.
+          door.again.expires_after(kAcceptAgain);
+          door.again.async_wait([this, &door](boost::system::error_code) { accept(door); });
+        });
   }
 
   /// Those who wait outside. One at a time, with a turn for everybody inside in between, thousands
   /// would wait for a minute.
-  boost::system::error_code accept_all() {
+  boost::system::error_code accept_all(tcp::acceptor& acceptor) {
     for (int taken = 0; taken < kMostAtOnce; ++taken) {
       boost::system::error_code error;
       tcp::socket socket = acceptor.accept(error);
       if (error == asio::error::would_block || error == asio::error::try_again) return {};
       if (error) return error;
-      if (!may_come(socket)) continue;
+      Neighbour owner = owner_of(socket);
+      if (owner.name.empty() || !world.count.may_come(owner)) continue;
       boost::system::error_code ignored;
       close_on_exec(socket);
       socket.set_option(tcp::no_delay(true), ignored);
-      make_connection(std::move(socket), tls, world)->begin();
+      make_connection(std::move(socket), std::move(owner), tls, world)->begin();
     }
     return {};
   }
 
-  bool may_come(const tcp::socket& socket) const {
+  /// Whom a connection that has come is counted for; empty: it has gone.
+  static Neighbour owner_of(tcp::socket& socket) {
     boost::system::error_code gone;
     const auto from = socket.remote_endpoint(gone);
-    return !gone && world.count.may_come(from.address());
+    if (gone) return {};
+    return neighbour_at(address_text(from.address().to_string(), std::to_string(from.port())),
+                        socket.native_handle());
   }
 
   void sweep_now_and_then() {
@@ -295,8 +336,7 @@ struct WebServer::Parts {
   TlsContext::Context tls;                 ///< of those who come from now on
   core::Mutex certificates_mutex;
   std::string certificates_trouble HYADES_GUARDED_BY(certificates_mutex);  ///< as it was told
-  tcp::acceptor acceptor;
-  asio::steady_timer again;
+  std::deque<Door> doors;
   asio::steady_timer sweep;
   asio::steady_timer look;
   std::thread thread;
@@ -342,13 +382,11 @@ core::Result<std::unique_ptr<WebServer>> WebServer::start(const farm::Listen& li
   if (core::Status bound = parts->listen(listen.address); !bound) return bound.error();
   std::unique_ptr<WebServer> server(new WebServer(std::move(parts)));
   Parts& running = *server->parts_;
-  boost::system::error_code error;
-  const tcp::endpoint own = running.acceptor.local_endpoint(error);
-  const uint16_t port = own.port();
+  const uint16_t port = running.doors.front().own_port();
   running.authenticator.set_port(port);
   server->url_ = (secure ? "https://" : "http://") +
                  listen.address.substr(0, listen.address.rfind(':') + 1) + std::to_string(port);
-  running.accept();
+  for (Parts::Door& one : running.doors) running.accept(one);
   if (serves == Serves::everything) {
     running.live.begin();
     running.sweep_now_and_then();

@@ -19,6 +19,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <string>
 
 #include "core/base/descriptor.h"
 
@@ -124,6 +125,39 @@ std::optional<uid_t> told_to(bool (*forbids)(), const std::string& peer, const s
 }
 
 constexpr std::nullopt_t kNobody = std::nullopt;
+
+/// Ends that no process holds are open, and until Linux 6.16 they count as root's: one that is not
+/// accepted yet, or one that close() leaves open (MPTCP).
+TEST(PeerUser, OfEndsThatNobodyHoldsIsNobody) {
+  const core::Descriptor listener = socket_at("127.0.0.1", 0, true);
+  const core::Descriptor caller = socket_at("127.0.0.1", 0, false);
+  ASSERT_TRUE(join(caller, listener));
+  const std::string not_accepted = text_of(listener);
+  EXPECT_EQ(user_of_peer(not_accepted, text_of(caller)), kNobody);
+  EXPECT_EQ(told_to(forbid_questions, not_accepted, text_of(caller)), kNobody);
+  const core::Descriptor other = accepted(listener);
+  EXPECT_EQ(user_of_peer(not_accepted, text_of(caller)), ::geteuid());
+  EXPECT_EQ(told_to(forbid_questions, not_accepted, text_of(caller)), ::geteuid());
+}
+
+TEST(PeerUser, NeighboursOfThisMachineAreItsUsers) {
+  if (::geteuid() != 0) GTEST_SKIP() << "only root can be two users";
+  const core::Descriptor listener = socket_at("0.0.0.0", 0, true);
+  const auto neighbour = [&](const char* from, bool another) {
+    std::optional<AsAnother> as;
+    if (another) as.emplace();
+    const core::Descriptor caller = socket_at(from, 0, false);
+    as.reset();
+    EXPECT_TRUE(join(caller, listener));
+    return neighbour_at(from + (":" + port_of(caller)), accepted(listener).get());
+  };
+  EXPECT_TRUE(neighbour("127.0.0.1", false).is_own_user);
+  EXPECT_NE(neighbour("127.0.0.1", false).name, neighbour("127.0.0.2", false).name);
+  EXPECT_FALSE(neighbour("127.0.0.1", true).is_own_user);
+  EXPECT_EQ(neighbour("127.0.0.1", true).name, neighbour("127.0.0.2", true).name)
+      << "he has all addresses of this machine";
+  EXPECT_NE(neighbour("127.0.0.1", true).name, neighbour("127.0.0.1", false).name);
+}
 
 TEST(PeerUser, IsWhoHoldsTheOtherEnd) {
   const core::Descriptor listener = socket_at("127.0.0.1", 0, true);

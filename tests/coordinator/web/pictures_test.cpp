@@ -189,7 +189,7 @@ class UnreadPictures : public ::testing::Test {
     EXPECT_GT(refused, 20);
     EXPECT_TRUE(farm::Json::parse(*unread.back().text)["error"].contains("retry_after_ms"));
     EXPECT_EQ(answer_to("bob", 79).status, 200) << "others have room";
-    EXPECT_EQ(answer_to("ada", 79).status, 200) << "and what they have is no more";
+    EXPECT_EQ(answer_to("ada", 79).status, 503) << "what they have counts for her, too";
     unread.clear();
     EXPECT_EQ(answer_to("ada", 78).status, 200);
   }
@@ -252,7 +252,7 @@ TEST_F(UnreadPictures, OfOneFrameAFewAreWantedAtATime) {
     });
   };
   constexpr size_t kAsked = 50;
-  constexpr size_t kRefused = kAsked - PicturesApi::kMostOfFrameOfOne;
+  constexpr size_t kRefused = kAsked - PictureTurns::kMostOfFrameOfOne;
   for (size_t i = 0; i < kAsked; ++i) ask("ada", 16 + static_cast<int>(i), note(adas));
   const bool refused = answered(kRefused, 0);
   const std::vector<unsigned> first = [&] {
@@ -266,7 +266,7 @@ TEST_F(UnreadPictures, OfOneFrameAFewAreWantedAtATime) {
   EXPECT_EQ(first, std::vector<unsigned>(kRefused, 503));
   ASSERT_TRUE(answered(kAsked, 2));
   EXPECT_EQ(bobs, (std::vector<unsigned>{200, 200}));
-  EXPECT_EQ(std::count(adas.begin(), adas.end(), 200U), PicturesApi::kMostOfFrameOfOne);
+  EXPECT_EQ(std::count(adas.begin(), adas.end(), 200U), PictureTurns::kMostOfFrameOfOne);
 }
 
 /// Films that take long to come keep others' waiting where different callers want them, and no
@@ -701,6 +701,18 @@ TEST_F(UnreadPictures, WhatIsKeptForOthersStays) {
   }
   EXPECT_EQ(unread.back().status, 503U);
   EXPECT_EQ(answer_to("bob", 79).text, kept.text);
+}
+
+/// Who mirrors what another asks for, and reads nothing of it, fills his own room.
+TEST_F(UnreadPictures, WhatOthersDoNotReadIsTheirs) {
+  start(true);
+  std::vector<WebReply> unread;
+  for (int width = 16; width <= FarmWorld::kWidth; ++width) {
+    EXPECT_EQ(answer_to("bob", width).status, 200) << width;
+    unread.push_back(answer_to("mallory", width));
+  }
+  EXPECT_EQ(unread.front().status, 200);
+  EXPECT_EQ(unread.back().status, 503);
 }
 
 /// An earlier life's picture is none of this one's, though its frames are counted anew.
