@@ -17,8 +17,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// What still runs may write into it for a while.
-constexpr int kTries = 10;
+/// Seconds for which what still runs may write into it, where the process did not end in order.
+constexpr int kTries = 3;
 
 [[noreturn]] void remove_when_closed(const std::string& path, int alive) {
   // Signals of the terminal are for the process, and whoever reads its output waits for its end.
@@ -29,10 +29,13 @@ constexpr int kTries = 10;
   ::dup2(STDOUT_FILENO, STDERR_FILENO);
   ::close_range(STDERR_FILENO + 1, ~0U, 0);
   (void)::chdir("/");
-  for (char none = 0; ::read(STDIN_FILENO, &none, 1) < 0 && errno == EINTR;) continue;
+  char none = 0;
+  ssize_t told = 0;
+  while ((told = ::read(STDIN_FILENO, &none, 1)) < 0 && errno == EINTR) continue;
   std::error_code ignored;
-  for (int i = 0; i < kTries && fs::exists(path, ignored); ++i) {
-    if (i > 0) ::sleep(1);
+  fs::remove_all(path, ignored);
+  for (int i = 0; told == 0 && i < kTries; ++i) {
+    ::sleep(1);
     fs::remove_all(path, ignored);
   }
   ::_exit(0);
@@ -69,6 +72,7 @@ TemporaryFolder::TemporaryFolder(std::string path, core::Descriptor alive, pid_t
 TemporaryFolder::~TemporaryFolder() {
   std::error_code ignored;
   fs::remove_all(path_, ignored);
+  (void)!::write(alive_.get(), "", 1);  // it ends in order
   alive_.close();
   if (remover_ > 0) ::waitpid(remover_, nullptr, 0);
 }

@@ -107,7 +107,14 @@ def _steps(scene: Any, frames: range, numbered: bool, name: str) -> Generator[An
     scene_job.apply_settings(job, scene.hyades)
     job.outputs, more = _outputs(scene, job, numbered)
     more += _of_mattes(job.outputs[0], exported.names)
+    more += _of_drawings(scene)
     yield Exported(job, [*exported.complaints, *more], exported.names)
+
+
+def _of_drawings(scene: Any) -> list[Complaint]:
+    """Of grease pencil, which Blender itself draws over what F12 renders."""
+    drawn = [one for one in scene.objects if one.type in ("GPENCIL", "GREASEPENCIL") and not one.hide_render]
+    return [Complaint(f"object '{one.name}'", "grease pencil is drawn by Blender alone; it is left out") for one in drawn]
 
 
 def output_folder(scene: Any) -> Path:

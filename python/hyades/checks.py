@@ -161,14 +161,21 @@ def of_type(kind: type, words: str) -> Callable[[Key, Any], Any]:
     return check
 
 
+@cache
+def _classes_in(hint: str) -> frozenset[str]:
+    return frozenset(re.findall(r"[A-Z]\w+", hint)) - {"None", "Any", "Mapping", "Sequence", "Color", "FrameRange"}
+
+
 def map_of_keys(key: Key, value: Any) -> Any:
-    if hasattr(value, "said"):
+    """Something of a class that the key's hint names."""
+    wanted = _classes_in(key.hint)
+    if hasattr(value, "said") and any(one.__name__ in wanted for one in type(value).__mro__):
         return value
-    raise refuse("an object of the class that the key's hint names")
+    raise refuse(f"one of class {' or '.join(sorted(wanted))}")
 
 
 def or_map(plain_check: Callable[[Key, Any], Any]) -> Callable[[Key, Any], Any]:
-    return lambda key, value: value if hasattr(value, "said") else plain_check(key, value)
+    return lambda key, value: (map_of_keys if hasattr(value, "said") else plain_check)(key, value)
 
 
 def list_of(kind: Callable[[Key, Any], Any]) -> Callable[[Key, Any], Any]:
@@ -180,7 +187,43 @@ def list_of(kind: Callable[[Key, Any], Any]) -> Callable[[Key, Any], Any]:
     return check
 
 
+class Entries(dict[str, Any]):
+    """Things of a job by name, which checks what it is given as keys do."""
+
+    def __init__(self, key: Key | None = None, values: Mapping[str, Any] | None = None) -> None:
+        super().__init__()
+        self._key = key
+        self.update(values or {})
+
+    def __setitem__(self, name: str, value: Any) -> None:
+        if self._key is not None:
+            try:
+                map_of_keys(self._key, value)
+            except KeyRefused as error:
+                raise KeyRefused(f"{self._key.owner}.{self._key.name}[{name!r}] is {value!r}, {error}") from None
+        super().__setitem__(name, value)
+
+    def update(self, *values: Any, **named: Any) -> None:
+        for name, value in dict(*values, **named).items():
+            self[name] = value
+
+    def setdefault(self, name: str, default: Any = None) -> Any:
+        if name not in self:
+            self[name] = default
+        return self[name]
+
+    def __ior__(self, values: Any) -> Entries:  # type: ignore[override,misc]
+        self.update(values)
+        return self
+
+
 def entries(key: Key, value: Any) -> Any:
+    if isinstance(value, Mapping) and all(isinstance(name, str) for name in value):
+        return Entries(key, value)
+    raise refuse("a dict of names")
+
+
+def overrides(key: Key, value: Any) -> Any:
     if isinstance(value, Mapping) and all(isinstance(name, str) for name in value):
         return value
     raise refuse("a dict of names")
@@ -253,7 +296,7 @@ _CHECKS: dict[str, Callable[[Key, Any], Any]] = {
     "list of steps": list_of(map_of_keys),
     "list": list_of(map_of_keys),
     "entries": entries,
-    "overrides": entries,
+    "overrides": overrides,
     "stops": stops,
     "frames": frames,
     "frames or map": or_map(frames),

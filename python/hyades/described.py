@@ -7,12 +7,12 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 from typing import Any, ClassVar
 
-from .checks import checked
+from .checks import Entries, checked
 from .errors import KeyRefused
 from .words import documented
 
 _UNSET: Any = type("Unset", (), {"__repr__": lambda self: "(not said)"})()
-_COLLECTIONS = {"entries": dict, "list": list}
+_COLLECTIONS = ("entries", "list")
 _ENOUGH = ("like", "quaternion")  # beside them nothing else has to be said
 
 
@@ -34,16 +34,18 @@ class Key:
     required: bool = False
     name: str = field(default="", init=False)
     owner: str = field(default="", init=False)
+    hint: str = field(default="", init=False)
+    """The type that the class says."""
 
     def __set_name__(self, owner: type, name: str) -> None:
-        self.name, self.owner = name, owner.__name__
+        self.name, self.owner, self.hint = name, owner.__name__, str(vars(owner).get("__annotations__", {}).get(name, ""))
 
     def __get__(self, instance: Any, owner: type | None = None) -> Any:
         if instance is None:
             return _UNSET
         said = instance.__dict__
         if self.name not in said and self.takes in _COLLECTIONS:
-            said[self.name] = _COLLECTIONS[self.takes]()
+            said[self.name] = Entries(self) if self.takes == "entries" else []
         if self.name not in said and self.required:
             raise AttributeError(f"{type(instance).__name__}.{self.name} has not been said")
         return said.get(self.name, self.default)

@@ -8,7 +8,7 @@ import shutil
 import signal
 import subprocess
 import tempfile
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any, TypeAlias
@@ -112,16 +112,29 @@ def written(job: Job | PathLike, folder: Path) -> Iterator[Path]:
         raise
 
 
-def check(job: Job | PathLike, *, program: PathLike | None = None) -> str:
-    """Reads a job and all files that it names; what it is and needs, in words. JobError: mistakes."""
+def set_options(parameters: Mapping[str, object] | None) -> list[str]:
+    """Parameters of a script as options of the program."""
+    plain = {name: str(value).lower() if isinstance(value, bool) else value for name, value in (parameters or {}).items()}
+    return [f"--set={name}={value}" for name, value in plain.items()]
+
+
+def check(job: Job | PathLike, *, set: Mapping[str, object] | None = None, program: PathLike | None = None) -> str:
+    """Reads a job and all files that it names; what it is and needs, in words. JobError: mistakes. `set`: the parameters
+    of a script (`.lua`)."""
     with tempfile.TemporaryDirectory() as folder, written(job, Path(folder)) as path:
-        return run_program(["check", str(path), "--no-probe"], program)
+        return run_program(["check", str(path), "--no-probe", *set_options(set)], program)
 
 
-def files_of(path: PathLike, program: PathLike | None = None, *, made: PathLike | None = None) -> list[dict[str, Any]]:
+def files_of(
+    path: PathLike,
+    program: PathLike | None = None,
+    *,
+    made: PathLike | None = None,
+    set: Mapping[str, object] | None = None,
+) -> list[dict[str, Any]]:
     """The files that a job is read from: `path` (relative to its folder), `sha256` and `size`; the
     job itself comes first. Those that are made of scenes of other tools, and lie on no disk, are
-    written into the folder `made`, each under its `sha256`."""
+    written into the folder `made`, each under its `sha256`. `set`: the parameters of a script."""
     written = [] if made is None else ["--made", os.fspath(made)]
-    listed: list[dict[str, Any]] = json.loads(run_program(["check", os.fspath(path), "--files", *written], program))
+    listed: list[dict[str, Any]] = json.loads(run_program(["check", os.fspath(path), "--files", *written, *set_options(set)], program))
     return listed

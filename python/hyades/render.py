@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -11,7 +11,7 @@ from typing import Any
 from .exr import Layers, read_exr
 from .job import Job
 from .picture import Picture
-from .program import PathLike, run_program, written
+from .program import PathLike, run_program, set_options, written
 
 
 @dataclass(frozen=True)
@@ -71,13 +71,14 @@ def render(
     resume: bool = False,
     film: bool = False,
     overwrite: bool = False,
+    set: Mapping[str, object] | None = None,
     on_progress: Callable[[Progress], None] | None = None,
     program: PathLike | None = None,
 ) -> Rendering:
     """Renders `job` (a Job, or the path of a job or scene) into the folder `output`.
 
     frames, samples, threads, crop (x0, y0, x1, y1), preview (pixels across), resume, film and
-    overwrite are the options of `hyades render`. A Job is written into the folder too, as NAME.yaml. `on_progress`
+    overwrite are the options of `hyades render`; `set` are the parameters of a script (`.lua`). A Job is written into the folder too, as NAME.yaml. `on_progress`
     is called five times a second at most. JobError: mistakes in the job; ProgramError: frames failed
     or the program is not there. Ctrl-C ends the run; `resume` goes on with it.
     """
@@ -86,6 +87,7 @@ def render(
     options += [f"--preview={preview}"] * (preview is not None)
     options += ["--resume"] * resume + ["--film"] * film
     options += ["--overwrite"] * overwrite
+    options += set_options(set)
     files: dict[int, list[Path]] = {}
     videos: list[Path] = []
 

@@ -5,7 +5,9 @@ from __future__ import annotations
 import os
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Literal, Protocol, TypeAlias, Union
+from typing import TYPE_CHECKING, Any, Literal, Protocol, TypeAlias, Union, get_args, get_type_hints
+
+from .errors import KeyRefused
 
 if TYPE_CHECKING:
     import numpy
@@ -27,6 +29,12 @@ class Keys:
     keys: Mapping[float, Any]
     ease: Literal["linear", "smooth", "step", "in", "out", "spline"] = "linear"
     repeat: Literal["none", "loop", "mirror"] = "none"
+
+    def __post_init__(self) -> None:
+        for name in ("ease", "repeat"):
+            known = get_args(get_type_hints(Keys)[name])
+            if getattr(self, name) not in known:
+                raise KeyRefused(f"Keys.{name} is {getattr(self, name)!r}, expected one of {', '.join(map(repr, known))}")
 
 
 class FileData(Protocol):

@@ -27,6 +27,17 @@ class Render(unittest.TestCase):
         self.addCleanup(folder.cleanup)
         self.folder = pathlib.Path(folder.name)
 
+    def test_scripts_have_parameters(self) -> None:
+        script = self.folder / "ball.lua"
+        script.write_text(
+            "return {film={size={8, 8}}, sampling={samples=1}, environment={color=param('bright', 0.5)},\n"
+            "  objects={ball={shape='sphere'}}, outputs={{file='ball.exr'}}}\n"
+        )
+        made = [hyades.render(script, self.folder / f"{at}", set={"bright": at}).picture().array.mean() for at in (0.1, 0.9)]
+        self.assertLess(made[0], made[1] - 0.01)
+        with self.assertRaisesRegex(hyades.HyadesError, "brihgt"):
+            hyades.check(script, set={"brihgt": 1})
+
     def test_arrays_become_what_is_seen(self) -> None:
         # A square before the camera, half red and half green, by a picture and by colours of its corners.
         points = [[-9, -9, 0], [9, -9, 0], [9, 9, 0], [-9, 9, 0]]

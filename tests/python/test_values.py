@@ -29,6 +29,18 @@ class Keys(unittest.TestCase):
         self.refused("a frame or range", lambda: hyades.Frames(range="1 to 7"))
         self.refused("from 0 up to 1", lambda: textures.Brick(mortar=hyades.Keys({1: 0.5, 9: 1.5})))
 
+    def test_objects_of_other_classes_are_refused(self) -> None:
+        clay = materials.Lambert()
+        job = hyades.Job(objects={"ball": objects.Sphere()})
+        self.refused("expected one of class Object", lambda: job.objects.update(a=clay))
+        self.refused("JobKeys.objects['a'] is 5", lambda: job.objects.__setitem__("a", 5))
+        self.refused("expected one of class Object", lambda: hyades.Job(objects={"a": clay}))
+        self.refused("expected one of class Camera", lambda: hyades.Job(camera=objects.Sphere()))
+        self.refused("expected one of class Output", lambda: hyades.Job(outputs=[clay]))
+        self.refused("expected one of class Density", lambda: media.Medium(density=clay))
+        self.assertEqual(list(job.objects), ["ball"])
+        self.refused("Keys.ease is 'bouncy', expected one of 'linear'", lambda: hyades.Keys({1: 2}, ease="bouncy"))
+
     def test_what_is_taken(self) -> None:
         hyades.Sampling(seed=2**64 - 1)
         materials.Lambert(color="#d8c8a8")

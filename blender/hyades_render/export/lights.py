@@ -18,6 +18,7 @@ from . import axes
 from .context import Context, free_name
 from .nodes import graph, values
 from .nodes.translator import Translator
+from .photometry import Profile, profile_of, profile_steps
 from .visibility import tell_of_lamp
 
 _SIDES = 96
@@ -55,12 +56,17 @@ def add_light(context: Context, light: PlacedLight) -> None:
     data = light.object.data
     if getattr(getattr(data, "cycles", None), "is_portal", False):
         return  # it only says where light comes in
-    color = _color(context, light)
+    color, profile = _color(context, light)
     if data.energy < 0 or values.is_constant(color, 0):
         if data.energy < 0:
             context.complain(light.where, "light below 0 is left out")
         return
-    {"POINT": _add_point, "SPOT": _add_spot, "SUN": _add_sun, "AREA": _add_area}[data.type](context, light, color)
+    if data.type == "POINT":
+        _add_point(context, light, color, profile)
+    else:
+        if profile is not None:
+            context.complain(light.where, "IES profiles are supported for point lamps; it shines as without")
+        {"SPOT": _add_spot, "SUN": _add_sun, "AREA": _add_area}[data.type](context, light, color)
     tell_of_lamp(context, light.where, light.object)
     for key in ("use_shadow", "cycles.cast_shadow"):
         owner = data.cycles if key.startswith("cycles.") and hasattr(data, "cycles") else data
@@ -69,23 +75,38 @@ def add_light(context: Context, light: PlacedLight) -> None:
             break
 
 
-def _color(context: Context, light: PlacedLight) -> Any:
-    """Its colour times what its nodes say."""
+def _color(context: Context, light: PlacedLight) -> tuple[Any, Profile | None]:
+    """Its colour times what its nodes say, and its profile."""
     data = light.object.data
     color: Any = tuple(axes.numbers(data.color))
     output = graph.output_node(data.node_tree, "OUTPUT_LIGHT") if data.use_nodes else None
     if output is None:
-        return values.held(color, 0.0, 1e18)
+        return values.held(color, 0.0, 1e18), None
     found = graph.source(graph.find_input(output, (), "Surface"))
     if not isinstance(found, graph.Output):
-        return 0.0
+        return 0.0, None
     if found.node.type != "EMISSION":
         context.complain(light.where, "only a shader Emission is supported; its own colour is used")
-        return values.held(color, 0.0, 1e18)
+        return values.held(color, 0.0, 1e18), None
     translator = Translator(context, light.where)
-    strength = values.number(translator.constant(found.input("Strength"), 1.0))
-    own = translator.constant(found.input("Color"), 1.0)
-    return values.held(values.product(color, values.product(own, strength)), 0.0, 1e18)
+    profiled, profile = profile_of(translator, found) or (None, None)
+    strength = 1.0 if profile is None else profile.strength
+    if profiled != "Strength":
+        strength *= _strength(translator, found)
+    own = 1.0 if profiled == "Color" else translator.constant(found.input("Color"), 1.0)
+    return values.held(values.product(color, values.product(own, strength)), 0.0, 1e18), profile
+
+
+def _strength(translator: Translator, emission: graph.Output) -> float:
+    """A Light Falloff that falls off as light does gives its own strength."""
+    found = graph.source(emission.input("Strength"))
+    if isinstance(found, graph.Output) and found.node.type == "LIGHT_FALLOFF":
+        if found.socket.identifier != "Quadratic":
+            translator.complain(found.node, "light falls off with the square of the distance")
+        if float(values.number(translator.constant(found.input("Smooth"), 0.0))) > 0:
+            translator.complain(found.node, "Smooth is left out")
+        return values.number(translator.constant(found.input("Strength"), 100.0))
+    return values.number(translator.constant(emission.input("Strength"), 1.0))
 
 
 def _add(context: Context, light: PlacedLight, made: lights.Light) -> None:
@@ -98,10 +119,15 @@ def _add_body(context: Context, light: PlacedLight, body: objects.Object) -> Non
     context.add_object(light.name, body)
 
 
-def _add_point(context: Context, light: PlacedLight, color: Any) -> None:
+def _add_point(context: Context, light: PlacedLight, color: Any, profile: Profile | None) -> None:
     data = light.object.data
-    radius = float(data.shadow_soft_size)
-    _add(context, light, lights.Point(at=light.at, color=color, power=float(data.energy), radius=radius))
+    made = lights.Point(color=color, power=float(data.energy), radius=float(data.shadow_soft_size))
+    if profile is None:
+        made.at = light.at
+    else:
+        made.image = profile.image
+        made.transform = profile_steps(light.matrix)
+    _add(context, light, made)
 
 
 def _add_spot(context: Context, light: PlacedLight, color: Any) -> None:
@@ -110,16 +136,26 @@ def _add_spot(context: Context, light: PlacedLight, color: Any) -> None:
     ahead = axes.numbers(numpy.array(light.at) + light.direction)
     keys = {"at": light.at, "look_at": ahead, "color": color, "power": float(data.energy)}
     keys["radius"] = float(data.shadow_soft_size)
+    # Until 3.6 Cycles' cones were darker towards their edge, by the cosine, and round whatever the lamp's scale.
+    is_old = bpy.app.version < (4, 0)
     stretch = numpy.linalg.norm(light.matrix[:3, :2], axis=0) / max(numpy.linalg.norm(light.matrix[:3, 2]), 1e-9)
+    if is_old:
+        stretch = numpy.ones(2)
     is_round = numpy.allclose(stretch, 1, rtol=1e-3)
-    # Until 3.6 Cycles' cones were darker towards their edge, by the cosine.
-    is_plain = is_round and bpy.app.version >= (4, 0)
+    is_plain = is_round and not is_old
     widest = math.atan(math.tan(min(half, 1.5)) * float(stretch.max()))
     if not is_plain and widest < math.radians(80):
         up = axes.numbers(light.matrix[:3, 1] / numpy.linalg.norm(light.matrix[:3, 1]))
-        picture = _cone(math.tan(widest), stretch, math.cos(half), data.spot_blend, bpy.app.version < (4, 0))
+        picture = _cone(math.tan(widest), stretch, math.cos(half), data.spot_blend, is_old)
         _add(context, light, lights.Projector(image=picture, up=up, fov=math.degrees(2 * widest), **keys))
         return
+    if is_old:  # no picture in a plane shows so much
+        made = lights.Point(image=_wide_cone(math.cos(half), data.spot_blend), transform=profile_steps(light.matrix))
+        made.color, made.power, made.radius = color, keys["power"], keys["radius"]
+        _add(context, light, made)
+        return
+    if not is_round:
+        context.complain(light.where, "so wide a cone is round, whatever the lamp's scale")
     # Blender's share is one of the cosine, the job's one of the angle; both fade alike between the two cones.
     inner = math.acos(min(math.cos(half) + (1 - math.cos(half)) * data.spot_blend, 1.0))
     blend = min(max(1 - inner / half, 0.0), 1.0)
@@ -131,17 +167,34 @@ def _cone(edge: float, stretch: numpy.ndarray, cosine: float, blend: float, dark
     steps = ((numpy.arange(_CONE) + 0.5) / _CONE * 2 - 1) * edge
     x, y = numpy.meshgrid(steps / stretch[0], -steps / stretch[1])
     towards = 1 / numpy.sqrt(1 + x * x + y * y)
-    fade = (towards - cosine) / max((1 - cosine) * blend, 1e-6)
-    fade = numpy.clip(fade, 0, 1)
-    light = fade * fade * (3 - 2 * fade) * (towards if darkens else 1)
+    light = _fade(towards, cosine, blend) * (towards if darkens else 1)
     return numpy.repeat(light[:, :, None], 3, axis=2).astype("float16")
+
+
+def _wide_cone(cosine: float, blend: float) -> numpy.ndarray:
+    """What a spot that darkens throws all round, as a lat-long picture (h, w, 3) whose lowest row lies ahead."""
+    towards = -numpy.cos((numpy.arange(1024) + 0.5) / 1024 * math.pi)
+    light = _fade(towards, cosine, blend) * numpy.maximum(towards, 0)
+    return numpy.repeat(numpy.repeat(light[:, None, None], 4, axis=1), 3, axis=2).astype("float16")
+
+
+def _fade(towards: numpy.ndarray, cosine: float, blend: float) -> numpy.ndarray:
+    """How much of a spot's light goes in directions of these cosines to its axis."""
+    fade = numpy.clip((towards - cosine) / max((1 - cosine) * blend, 1e-6), 0, 1)
+    return fade * fade * (3 - 2 * fade)
 
 
 def _add_sun(context: Context, light: PlacedLight, color: Any) -> None:
     data = light.object.data
     angle = min(math.degrees(data.angle), 90.0)
-    direction = axes.numbers(light.direction)
-    _add(context, light, lights.Sun(direction=direction, color=color, irradiance=float(data.energy), angle=angle))
+    direction, irradiance = axes.numbers(light.direction), float(data.energy)
+    if data.angle > math.pi / 2:
+        context.complain(light.where, "a sun of more than 90 degrees has 90")
+    if bpy.app.version < (4, 0):
+        # Its disc is as bright as if it lay in a plane, which costs large ones some of their light.
+        cosine = math.cos(min(data.angle, 3.1) / 2)
+        irradiance *= 2 * cosine / (1 + cosine)
+    _add(context, light, lights.Sun(direction=direction, color=color, irradiance=irradiance, angle=angle))
 
 
 def _add_area(context: Context, light: PlacedLight, color: Any) -> None:
@@ -150,11 +203,14 @@ def _add_area(context: Context, light: PlacedLight, color: Any) -> None:
     height = data.size_y if data.shape in ("RECTANGLE", "ELLIPSE") else data.size
     is_round = data.shape in ("DISK", "ELLIPSE")
     mesh = _ellipse(width, height) if is_round else _rectangle(width, height)
-    stretch = numpy.linalg.norm(light.matrix[:3, :2], axis=0)
-    area = width * height * float(stretch[0] * stretch[1]) * (math.pi / 4 if is_round else 1.0)
+    stretch = numpy.linalg.norm(numpy.cross(light.matrix[:3, 0], light.matrix[:3, 1]))  # of the area, sheared too
+    area = width * height * float(stretch) * (math.pi / 4 if is_round else 1.0)
     if area <= 0:
         context.complain(light.where, "a lamp without a size is left out")
         return
+    sides = light.matrix[:3, :3] / numpy.linalg.norm(light.matrix[:3, :3], axis=0)
+    if numpy.abs(sides.T @ sides - numpy.eye(3)).max() > 1e-3:
+        context.complain(light.where, "it is sheared, and shines to where its surface faces")
     # Until Blender 4 the same watts are darker by pi / 4.
     radiance = data.energy / ((math.pi if bpy.app.version >= (4, 0) else 4) * area)
     spread = min(max(math.degrees(data.spread), 1.0), 180.0)  # Cycles' least

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any, Optional
+from typing import Any, NamedTuple, Optional
 
 import hyades
 import numpy
@@ -10,12 +10,21 @@ import numpy
 Array = Any
 
 
+class Origin(NamedTuple):
+    """What the depsgraph says of one thing that it lists, besides the object."""
+
+    instancer: Any
+    """The object whose copy it is; None: it is the object itself."""
+    random: float
+    """0..1, its own."""
+
+
 class Surface:
     """The evaluated mesh of an object, while Blender keeps it. Arrays are read when they are asked for."""
 
-    def __init__(self, mesh: Any, object: Any, matrix: Array) -> None:
+    def __init__(self, mesh: Any, object: Any, matrix: Array, origin: Origin) -> None:
         """`matrix`: from the object's space to Blender's world."""
-        self.mesh, self.object, self.matrix = mesh, object, matrix
+        self.mesh, self.object, self.matrix, self.origin = mesh, object, matrix, origin
         self._read: dict[str, Array] = {}
         mesh.calc_loop_triangles()
 

@@ -15,7 +15,7 @@ from .context import Context, free_name
 from .hair import add_curves, add_hair, has_hair
 from .lights import PlacedLight, add_light
 from .materials import Made, material_of
-from .meshes import Surface, part
+from .meshes import Origin, Surface, part
 from .nodes import values
 from .nodes.displacement import displaced
 from .nodes.surface import PartOfSurface
@@ -97,14 +97,14 @@ def _add(context: Context, copies: dict[Any, _Copies], instance: Any, object: An
     kind, matrix = object.type, instance.matrix_world
     _tell_of_blur(context, object)
     if kind in _WITH_SURFACE and instance.is_instance:
-        pieces = pieces_of(context, object, matrix)
+        pieces = pieces_of(context, object, matrix, _origin(instance))
         rows = tuple(axes.array(matrix)[:3].reshape(-1))
         seen = is_seen(context, object) and not is_indirect
         ids = [_id(instance)] if context.moves else []
         copies[_kind(object, is_indirect)] = _Copies(object.name, pieces, seen, [rows], ids, [])
     elif kind in _WITH_SURFACE:
         seen = is_seen(context, object) and not is_indirect
-        for piece in pieces_of(context, object, matrix):
+        for piece in pieces_of(context, object, matrix, _origin(instance)):
             _add_piece(context, object.name, piece, axes.steps_to_world(matrix), seen)
     elif kind == "LIGHT":
         add_light(context, PlacedLight(object.name, object, axes.placed(matrix)))
@@ -138,7 +138,7 @@ def _add_another(context: Context, copies: _Copies, instance: Any, object: Any) 
         return False
     matrix = instance.matrix_world
     rows = tuple(axes.array(matrix)[:3].reshape(-1))
-    copies.others.append((rows, pieces_of(context, object, matrix)))
+    copies.others.append((rows, pieces_of(context, object, matrix, _origin(instance))))
     return True
 
 
@@ -151,6 +151,10 @@ def _kind(object: Any, is_indirect: bool) -> tuple[int, int, bool]:
 def _id(instance: Any) -> tuple[int, ...]:
     """A copy's, which it has at all moments."""
     return (instance.parent.original.as_pointer(), *instance.persistent_id)
+
+
+def _origin(instance: Any) -> Origin:
+    return Origin(instance.parent if instance.is_instance else None, (instance.random_id & 0xFFFFFFFF) / 0xFFFFFFFF)
 
 
 @contextmanager
@@ -167,7 +171,7 @@ def evaluated_mesh(object: Any) -> Iterator[Any]:
         object.to_mesh_clear()
 
 
-def pieces_of(context: Context, object: Any, matrix: Any) -> list[Piece]:
+def pieces_of(context: Context, object: Any, matrix: Any, origin: Origin) -> list[Piece]:
     """The parts of an object's evaluated mesh, one for each material; `matrix`, Blender's, leads into its world."""
     is_mesh = object.type == "MESH"
     materials = tuple(slot.material.name_full if slot.material else "" for slot in object.material_slots)
@@ -177,7 +181,7 @@ def pieces_of(context: Context, object: Any, matrix: Any) -> list[Piece]:
     with evaluated_mesh(object) as mesh:
         if mesh is None:
             return []
-        surface = Surface(mesh, object, axes.array(matrix))
+        surface = Surface(mesh, object, axes.array(matrix), origin)
         slots = surface.slots
         kinds = numpy.unique(slots)
         parts = [PartOfSurface(surface, slots == slot if len(kinds) > 1 else slice(None)) for slot in kinds]

@@ -13,6 +13,7 @@ from . import axes
 from .context import Context
 from .files import may_be_sent
 from .nodes import graph, values
+from .nodes.evaluate.blackbody import STEFAN
 from .nodes.graph import Output
 from .nodes.translator import Translator
 
@@ -74,7 +75,7 @@ def _of_node(translator: Translator, found: Output, path: str) -> media.Medium:
     if heat is not None and values.number(translator.constant(heat)) > 0:
         temperature = found.input("Temperature Attribute").socket.default_value or "temperature"
         kelvin = values.number(translator.constant(found.input("Temperature"), 1000.0))
-        strength = values.number(translator.constant(heat)) * _STEFAN * 1500.0**4 / numpy.pi
+        strength = values.number(translator.constant(heat)) * STEFAN * 1500.0**4 / numpy.pi
         made.emission = media.Emission(temperature=temperature, kelvin=kelvin, strength=float(strength))
     elif made.emission and isinstance(made.emission, list):
         strongest = max(made.emission)
@@ -82,9 +83,6 @@ def _of_node(translator: Translator, found: Output, path: str) -> media.Medium:
         made.emission = media.Emission(color=color, strength=strongest)
         translator.complain(found.node, "what shines follows the density")
     return made
-
-
-_STEFAN = 5.670374e-8
 
 
 def _box(corners: Any) -> hyades.MeshData:

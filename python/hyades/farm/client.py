@@ -6,7 +6,7 @@ import getpass
 import itertools
 import secrets
 import warnings
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any, Literal, TypeAlias
 
@@ -82,12 +82,13 @@ class Farm:
         max_attempts: int = 3,
         redundancy: int = 0,
         frame_order: Literal["sequential", "progressive"] = "sequential",
+        set: Mapping[str, object] | None = None,
         on_bytes: OnBytes | None = None,
         on_warning: Callable[[str], object] | None = None,
         program: PathLike | None = None,
     ) -> JobState:
         """Uploads what the coordinator lacks of a job's files and submits the job, once, however
-        often an answer is lost. Options are those of `hyades submit` (docs/client.md); `on_bytes` is
+        often an answer is lost. Options are those of `hyades submit` (docs/client.md); `set` are the parameters of a script; `on_bytes` is
         told the bytes that were sent and their total, `on_warning` each thing that is likely not meant in
         the job, that nothing gives light, say (without it: warnings of Python's). JobError: the job has mistakes."""
         message: dict[str, Any] = {
@@ -105,7 +106,7 @@ class Farm:
         }
         if frames is not None:
             message["frames"] = [_frame_range(frames)]
-        with packed(job, program) as package:
+        with packed(job, program, set) as package:
             answer = submit(self._http, package, message, on_bytes)
         state = read_state(JobState, part(answer, "job", dict))
         told = answer.get("warnings")  # older coordinators have none

@@ -49,12 +49,12 @@ class Package:
 
 
 @contextmanager
-def packed(job: Job | PathLike, program: PathLike | None) -> Iterator[Package]:
+def packed(job: Job | PathLike, program: PathLike | None, set: Mapping[str, object] | None = None) -> Iterator[Package]:
     """A job with all its files, while the block lasts. Where files name others (include, scenes of
     other tools, ...) the program is asked which."""
     if not isinstance(job, Job):
         with tempfile.TemporaryDirectory() as made:
-            yield Package("", _listed(Path(job), program, Path(made)))
+            yield Package("", _listed(Path(job), program, Path(made), set))
         return
     name = f"{job.name or 'job'}.yaml"
     document = job.document()
@@ -208,10 +208,12 @@ def _file(name: str, content: bytes | Path) -> JobFile:
         return JobFile(name, content, digest, data.tell())
 
 
-def _listed(path: Path, program: PathLike | None, made: Path) -> list[JobFile]:
+def _listed(
+    path: Path, program: PathLike | None, made: Path, set: Mapping[str, object] | None = None
+) -> list[JobFile]:
     """What the program reads of a job, or of a scene of another tool; what it makes of scenes comes into `made`."""
     files = []
-    for row in files_of(path, program, made=made):
+    for row in files_of(path, program, made=made, set=set):
         content = made / row["sha256"]
         if not content.is_file():
             content = path.parent / row["path"]

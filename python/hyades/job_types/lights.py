@@ -41,8 +41,9 @@ class Point(Light):
     image: File | None = key("file")
     """How much goes where: a lat-long picture, laid around the light as that of the environment is
     around the scene and turned by the light's `transform`. Its colours multiply the light, 1 leaves
-    it as it is. What a lamp's maker measures (goniometric data) is said so. Range: a picture.
-    Default: none."""
+    it as it is. What a lamp's maker measures is said so: of an IES profile (`.ies`, LM-63,
+    photometry of type C) with `power: 1` the light is the lamp itself, 177.83 lm being 1 W; down is
+    -y, horizontal angles go from x towards -z. Range: a picture. Default: none."""
     light_group: str | None = key("text")
     """Which light group its light belongs to; see Layers. Range: letters, digits, _ and -. Default:
     none."""

@@ -3,7 +3,7 @@
 import math
 
 import bpy
-from scene import add, camera, floor, light, link, material, node, primitive, scene, set_of_cycles, world
+from scene import add, camera, floor, light, link, material, node, primitive, scene, set_of_cycles, shader_of, world
 
 
 def lit() -> None:
@@ -79,6 +79,40 @@ def instanced_collection() -> None:
     for i in range(5):
         empty = add(None, f"Place{i}", at=(1.8 * i - 3.6, i % 2, 0), turn=(0, 0, 40 * i), scale=(1, 1, 0.7 + 0.2 * i))
         empty.instance_type, empty.instance_collection = "COLLECTION", collection
+
+
+def row_of_copies(made):
+    """Cubes by collections on a row of empties, which are returned."""
+    lit()
+    collection = bpy.data.collections.new("One")
+    body = primitive("cube", made, at=(0, 0, 0.35), size=0.7)
+    for parent in body.users_collection:
+        parent.objects.unlink(body)
+    collection.objects.link(body)
+    empties = [add(None, f"Place{i}", at=(1.4 * i - 2.8, i % 2, 0), turn=(0, 0, 20 * i)) for i in range(5)]
+    for empty in empties:
+        empty.instance_type, empty.instance_collection = "COLLECTION", collection
+    return empties
+
+
+@scene(samples=128)
+def copies_of_random_colors() -> None:
+    made = material()
+    info, ramp = node(made, "ShaderNodeObjectInfo"), node(made, "ShaderNodeValToRGB")
+    ramp.color_ramp.elements[0].color, ramp.color_ramp.elements[1].color = (0.8, 0.1, 0.1, 1), (0.1, 0.2, 0.9, 1)
+    link(made, info.outputs["Random"], ramp.inputs["Fac"])
+    link(made, ramp.outputs[0], shader_of(made).inputs["Color"])
+    row_of_copies(made)
+
+
+@scene(samples=128)
+def copies_colored_by_their_instancer() -> None:
+    made = material()
+    tint = node(made, "ShaderNodeAttribute")
+    tint.attribute_type, tint.attribute_name = "INSTANCER", "tint"
+    link(made, tint.outputs["Color"], shader_of(made).inputs["Color"])
+    for i, empty in enumerate(row_of_copies(made)):
+        empty["tint"] = [0.1 + 0.2 * i, 0.8 - 0.15 * i, 0.2]
 
 
 @scene(samples=128)

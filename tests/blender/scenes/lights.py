@@ -18,6 +18,41 @@ def point_with_radius() -> None:
     light("POINT", 300, at=(2, -2, 4), shadow_soft_size=0.4)
 
 
+def profiled(socket: str, strength: float, **keys):
+    """A point lamp that an IES profile makes brighter to one side and above; half a watt of light for each of its own."""
+    import bpy
+
+    def candela(up: int, around: int) -> float:
+        return 30 * (1 + math.cos(math.radians(up))) * (1.2 + math.cos(math.radians(around - 50))) + 5
+
+    ups, arounds = range(0, 181, 5), range(0, 361, 10)
+    rows = [[f"1 -1 1 {len(ups)} {len(arounds)} 1 2 0 0 0", "1 1 20"], ups, arounds]
+    rows += [[f"{candela(up, around):.3f}" for up in ups] for around in arounds]
+    text = bpy.data.texts.new("lamp.ies")
+    text.write("IESNA:LM-63-2002\nTILT=NONE\n" + "\n".join(" ".join(map(str, row)) for row in rows) + "\n")
+    lamp = light("POINT", 10, **keys)
+    lamp.data.use_nodes = True
+    tree = lamp.data.node_tree
+    profile = tree.nodes.new("ShaderNodeTexIES")
+    profile.mode, profile.ies = "INTERNAL", text
+    profile.inputs["Strength"].default_value = strength
+    emission = next(node for node in tree.nodes if node.type == "EMISSION")
+    tree.links.new(profile.outputs[0], emission.inputs[socket])
+    return lamp
+
+
+@scene()
+def point_with_profile() -> None:
+    room()
+    profiled("Strength", 3, at=(1, -1, 3), towards=(0, 0, 0), shadow_soft_size=0)
+
+
+@scene()
+def ball_with_profile() -> None:
+    room()
+    profiled("Color", 2, at=(1, -1, 3.5), towards=(1, 0, 0.5), color=(1, 0.8, 0.5), shadow_soft_size=0.3)
+
+
 @scene()
 def sun() -> None:
     room()
@@ -40,6 +75,51 @@ def spot() -> None:
 def spot_with_radius() -> None:
     room()
     light("SPOT", 600, at=(2, -2, 5), towards=(0, 0, 0.5), spot_size=math.radians(50), spot_blend=0.5, shadow_soft_size=0.4)
+
+
+@scene()
+def spot_of_a_scaled_lamp() -> None:
+    room()
+    lamp = light("SPOT", 600, at=(2, -2, 5), towards=(0, 0, 0.5), spot_size=math.radians(50), spot_blend=0.5, shadow_soft_size=0)
+    lamp.scale = (2, 1, 1)
+
+
+@scene()
+def widest_spot() -> None:
+    room()
+    light("SPOT", 300, at=(2, -2, 4), towards=(0, 0, 0.5), spot_size=math.radians(175), spot_blend=0.3, shadow_soft_size=0)
+
+
+@scene()
+def large_sun() -> None:
+    room()
+    light("SUN", 3, at=(2, -2, 4), angle=math.radians(75))
+
+
+@scene(mean=1, block=10, complaints=("it is sheared",))
+def area_of_a_sheared_lamp() -> None:
+    # Cycles' shines along an axis that is not its surface's normal.
+    import bpy
+    from scene import add
+
+    room()
+    above = add(None, "Above", at=(1, -2, 4), turn=(20, 30, 40), scale=(2, 0.7, 1))
+    lamp = light("AREA", 200, at=(0, 0, 0), shape="RECTANGLE", size=1, size_y=0.7)
+    lamp.rotation_euler = [math.radians(angle) for angle in (-20, 15, 35)]
+    lamp.parent = above
+    bpy.context.view_layer.update()
+
+
+@scene()
+def point_with_falloff() -> None:
+    room()
+    lamp = light("POINT", 3, at=(2, -2, 4), shadow_soft_size=0)
+    lamp.data.use_nodes = True
+    tree = lamp.data.node_tree
+    falloff = tree.nodes.new("ShaderNodeLightFalloff")
+    falloff.inputs["Strength"].default_value = 90
+    emission = next(node for node in tree.nodes if node.type == "EMISSION")
+    tree.links.new(falloff.outputs["Quadratic"], emission.inputs["Strength"])
 
 
 @scene()

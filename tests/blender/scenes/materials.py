@@ -148,6 +148,12 @@ def principled_volume() -> None:
     ball(_volume("ShaderNodeVolumePrincipled", Color=(0.5, 0.6, 0.7), Density=0.8, Emission_Strength=0.2), "cube")
 
 
+@scene()
+def glowing_volume() -> None:
+    hot = {"Blackbody_Intensity": 0.9, "Temperature": 2500, "Blackbody_Tint": (1, 0.8, 0.9)}
+    ball(_volume("ShaderNodeVolumePrincipled", Color=(0.5, 0.6, 0.7), Density=0.5, **hot), "cube")
+
+
 def _volume(kind: str, **inputs):
     made = material(node=None)
     volume = node(made, kind, **inputs)

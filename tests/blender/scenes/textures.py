@@ -57,6 +57,25 @@ def image_of_floats() -> None:
 
 
 @scene(samples=64)
+def image_of_a_sequence() -> None:
+    import os
+    import tempfile
+
+    folder = tempfile.mkdtemp()
+    for number in (1, 2, 3):
+        made = bpy.data.images.new(f"One{number}", 8, 8)
+        made.generated_color = (0.3 * number, 0.2, 0.1, 1)
+        made.filepath_raw, made.file_format = os.path.join(folder, f"a{number:04}.png"), "PNG"
+        made.save()
+    _, texture = board("ShaderNodeTexImage")
+    texture.image = bpy.data.images.load(os.path.join(folder, "a0001.png"))
+    texture.image.source = "SEQUENCE"
+    texture.image_user.frame_duration, texture.image_user.frame_start = 3, 1
+    texture.image_user.use_auto_refresh = True
+    bpy.context.scene.frame_set(3)
+
+
+@scene(samples=64)
 def checker() -> None:
     board("ShaderNodeTexChecker", coordinates="Object", Scale=3.0, Color1=(0.9, 0.2, 0.1), Color2=(0.1, 0.3, 0.8))
 

@@ -92,7 +92,7 @@ class _Moved(Surface):
     """A surface whose vertices are elsewhere."""
 
     def __init__(self, surface: Surface, positions: Array) -> None:
-        self.mesh, self.object, self.matrix = surface.mesh, surface.object, surface.matrix
+        self.mesh, self.object, self.matrix, self.origin = surface.mesh, surface.object, surface.matrix, surface.origin
         self._read = dict(surface._read)
         self._read["positions"] = positions
         if surface.shading()[0] != "face":

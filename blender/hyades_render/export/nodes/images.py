@@ -47,6 +47,11 @@ def image_file(translator: Translator, node: Any, output: Output) -> ImageFile:
     if image.source == "TILED":
         _check_tiles(translator, output, path)
         return ImageFile(path, space, True)
+    if image.source == "SEQUENCE":
+        path = os.path.abspath(_path(image, image.filepath_from_user(image_user=output.node.image_user)))
+        if not may_be_sent(path, _READ):
+            raise Inexpressible(output, f"there is no picture {path} of the sequence")
+        return ImageFile(path, space, False)
     if image.source not in ("FILE", "GENERATED"):
         raise Inexpressible(output, f"images of source {image.source.lower()} are not supported")
     if image.is_dirty or image.source == "GENERATED":
@@ -77,10 +82,10 @@ def _check_tiles(translator: Translator, output: Output, path: str) -> None:
     raise Inexpressible(output, why)
 
 
-def _path(image: Any) -> str:
+def _path(image: Any, path: str = "") -> str:
     import bpy
 
-    return bpy.path.abspath(image.filepath, library=image.library)
+    return bpy.path.abspath(path or image.filepath, library=image.library)
 
 
 def _array(translator: Translator, output: Output) -> numpy.ndarray:

@@ -89,5 +89,9 @@ class PartPoints(Points):
         self.part.is_of_object = True
         return self.part.surface.object
 
+    def origin(self) -> Any:
+        self.part.is_of_object = True
+        return self.part.surface.origin
+
 
 __all__ = ["PartOfSurface", "PartPoints", "Varies"]

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import math
-from typing import Optional
+from typing import Any, Optional
 
 from hyades import media
 
 from . import graph, values
+from .evaluate.blackbody import STEFAN, color_of
 from .graph import Input, Output
 from .translator import Translator
 
@@ -88,3 +89,16 @@ def _add(translator: Translator, output: Output, share: float, total: _Sum) -> N
         total.absorption = _plus(total.absorption, _scaled(rest, density))
         strength = share * _number(translator, output, "Emission Strength")
         total.emission = _plus(total.emission, _scaled(_color(translator, output, "Emission Color"), strength))
+        total.emission = _plus(total.emission, _scaled(_heat(translator, output), share))
+
+
+def _heat(translator: Translator, output: Output) -> Any:
+    """What a Principled Volume gives off as a black body, of one temperature, per metre."""
+    share = _number(translator, output, "Blackbody Intensity")
+    if share <= 0:
+        return (0.0, 0.0, 0.0)
+    kelvin = max(_number(translator, output, "Temperature", 1000.0), 0.0)
+    # The law of Stefan and Boltzmann, in units of Cycles' own: a millionth. Between none and all of it there is 1.
+    strength = STEFAN * 1e-6 / math.pi * (1 - share + share * kelvin**4)
+    tint = _color(translator, output, "Blackbody Tint", 1.0)
+    return tuple(strength * part * light for part, light in zip(tint, color_of(kelvin)))

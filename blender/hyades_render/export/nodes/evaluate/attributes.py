@@ -31,16 +31,20 @@ def attribute(at: Evaluator, output: Output) -> Array:
 
 
 def _of_object(at: Evaluator, output: Output) -> Array:
-    """A property of the object, or of its data."""
+    """A property of the object, or of its data; or first of what instances it."""
     object, name = at.points.object(), output.node.attribute_name
     if output.node.attribute_type not in ("OBJECT", "INSTANCER"):
         raise Inexpressible(output, "attributes of the view layer are not supported")
-    for owner in (object, object.data):
+    instancer = at.points.origin().instancer if output.node.attribute_type == "INSTANCER" else None
+    owners = [] if instancer is None else [instancer, instancer.data]
+    for owner in (*owners, object, object.data):
         found = owner.get(name, getattr(owner, name, None)) if owner is not None else None
         if found is not None:
             value = numpy.atleast_1d(numpy.array(found, float))
             value = numpy.repeat(value, 3)[:3] if len(value) == 1 else value[:3]
             return value.mean() if output.socket.identifier == "Fac" else value
+    if instancer is not None:
+        raise Inexpressible(output, f"attributes that geometry nodes give to instances ('{name}') are not supported")
     return numpy.zeros(3) if output.socket.identifier != "Fac" else numpy.zeros(())
 
 
@@ -53,6 +57,8 @@ def object_info(at: Evaluator, output: Output) -> Array:
         return numpy.array(object.color[:3])
     if kind == "Alpha":
         return numpy.asarray(object.color[3])
+    if kind == "Random":
+        return numpy.asarray(at.points.origin().random)
     if kind == "Object Index":
         return numpy.asarray(float(object.pass_index))
     if kind == "Material Index":

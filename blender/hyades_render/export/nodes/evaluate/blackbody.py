@@ -6,6 +6,9 @@ from typing import Any
 
 import numpy
 
+STEFAN = 5.670374e-8
+"""Of the law of Stefan and Boltzmann [W/(m² K⁴)]."""
+
 _TO_REC709 = numpy.array([[3.2404542, -1.5371385, -0.4985314], [-0.9692660, 1.8760108, 0.0415560],
                           [0.0556434, -0.2040259, 1.0572252]])
 

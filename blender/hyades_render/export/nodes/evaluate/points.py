@@ -48,6 +48,10 @@ class Points:
         """The object, for what it says of itself."""
         raise Varies
 
+    def origin(self) -> Any:
+        """The object's Origin: whose copy it is, and its random number."""
+        raise Varies
+
 
 NOWHERE = Points()
 """Whatever asks for a place, Varies."""
