@@ -1,6 +1,7 @@
 #include "coordinator/web/pictures_api.h"
 
 #include <algorithm>
+#include <string>
 #include <utility>
 
 #include <fmt/format.h>
