@@ -78,8 +78,9 @@ def render(
     """Renders `job` (a Job, or the path of a job or scene) into the folder `output`.
 
     frames, samples, threads, crop (x0, y0, x1, y1), preview (pixels across), resume, film and
-    overwrite are the options of `hyades render`; `set` are the parameters of a script (`.lua`). A Job is written into the folder too, as NAME.yaml. `on_progress`
-    is called five times a second at most. JobError: mistakes in the job; ProgramError: frames failed
+    overwrite are the options of `hyades render`; `set` are the parameters of a script (`.lua`). A
+    Job is written into the folder too, as NAME.yaml. `on_progress` is called five times a second at
+    most. JobError: mistakes in the job; ProgramError: frames failed
     or the program is not there. Ctrl-C ends the run; `resume` goes on with it.
     """
     options = ["--json", "--output", str(output)]

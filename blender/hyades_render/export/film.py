@@ -21,6 +21,8 @@ def add_film(context: Context) -> None:
     if render.use_border:
         film.crop = _crop(render, size)
     context.job.film = film
+    if getattr(getattr(context.scene, "cycles", None), "use_fast_gi", False):
+        context.complain("render", "Fast GI Approximation is left out: all light is rendered")
     if render.pixel_aspect_x != render.pixel_aspect_y:
         context.complain("output", "pixels that are not square are not supported; square ones are used")
     context.job.sampling = hyades.Sampling(samples=int(context.setting("samples", 64)))

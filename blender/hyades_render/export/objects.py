@@ -95,7 +95,7 @@ def add_objects(context: Context) -> None:
 def _add(context: Context, copies: dict[Any, _Copies], instance: Any, object: Any, is_indirect: bool) -> None:
     """One object, or the first of many copies."""
     kind, matrix = object.type, instance.matrix_world
-    _tell_of_blur(context, object)
+    _tell_of_settings(context, object)
     if kind in _WITH_SURFACE and instance.is_instance:
         pieces = pieces_of(context, object, matrix, _origin(instance))
         rows = tuple(axes.array(matrix)[:3].reshape(-1))
@@ -123,11 +123,13 @@ def _add_hair_of(context: Context, instance: Any, object: Any, is_indirect: bool
     add_hair(context, object, instance.matrix_world, is_seen(context, object) and not is_indirect)
 
 
-def _tell_of_blur(context: Context, object: Any) -> None:
-    """Complains where an object is to stay sharp though it moves."""
+def _tell_of_settings(context: Context, object: Any) -> None:
+    """Complains where an object is to stay sharp though it moves, or has shadows of its own."""
     cycles = getattr(object, "cycles", None)
     if context.scene.render.use_motion_blur and not getattr(cycles, "use_motion_blur", True):
         context.complain(f"object '{object.name}'", "motion blur is for all: it is blurred where it moves")
+    if getattr(cycles, "shadow_terminator_offset", 0.0) > 0:
+        context.complain(f"object '{object.name}'", "its Shadow Terminator offset is left out: edges of shadows have another remedy")
 
 
 def _add_another(context: Context, copies: _Copies, instance: Any, object: Any) -> bool:

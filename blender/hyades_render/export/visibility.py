@@ -26,6 +26,8 @@ def is_seen(context: Context, object: Any) -> bool:
 def tell_of_lamp(context: Context, where: str, object: Any) -> None:
     """Complains where rays of one kind do not meet a lamp's light."""
     _tell(context, where, [ray for ray in _OF_LAMPS if not getattr(object, f"visible_{ray}")])
+    if getattr(getattr(object.data, "cycles", None), "max_bounces", 1024) < getattr(getattr(context.scene, "cycles", None), "max_bounces", 12):
+        context.complain(where, "its Max Bounces are those of the scene")
 
 
 def is_world_seen(context: Context, world: Any) -> bool:

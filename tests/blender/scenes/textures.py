@@ -75,6 +75,37 @@ def image_of_a_sequence() -> None:
     bpy.context.scene.frame_set(3)
 
 
+def projected(projection: str, blend: float = 0.0) -> None:
+    """A ball with a picture that is laid on it by its generated coordinates."""
+    made = material(node="ShaderNodeEmission")
+    texture = node(made, "ShaderNodeTexImage")
+    texture.image, texture.projection, texture.projection_blend = picture(), projection, blend
+    link(made, node(made, "ShaderNodeTexCoord").outputs["Generated"], texture.inputs["Vector"])
+    link(made, texture.outputs["Color"], shader_of(made).inputs["Color"])
+    primitive("uv_sphere", made, turn=(20, 10, 30), radius=1.2, segments=48, ring_count=24, smooth=True)
+    camera((0, -4, 0), (0, 0, 0))
+
+
+@scene(samples=64)
+def image_on_a_box() -> None:
+    projected("BOX", 0.3)
+
+
+@scene(samples=64)
+def image_on_a_sharp_box() -> None:
+    projected("BOX")
+
+
+@scene(samples=64)
+def image_on_a_sphere() -> None:
+    projected("SPHERE")
+
+
+@scene(samples=64)
+def image_on_a_tube() -> None:
+    projected("TUBE")
+
+
 @scene(samples=64)
 def checker() -> None:
     board("ShaderNodeTexChecker", coordinates="Object", Scale=3.0, Color1=(0.9, 0.2, 0.1), Color2=(0.1, 0.3, 0.8))
