@@ -12,6 +12,7 @@
 
 #include "cli/client_commands.h"
 #include "cli/completion.h"
+#include "cli/program.h"
 #include "core/base/machine.h"
 #include "core/base/text.h"
 #include "core/base/version.h"
@@ -110,7 +111,7 @@ std::vector<char*> spelled_out(int argc, char** argv) {
 /// The command's exit status; where another program knows it, this one becomes that.
 int start(const Command& command, int argc, std::vector<char*>& words) {
   if (command.program == nullptr) {
-    return hyades::cli::completion_command(argc - 1, words.data() + 1);
+    return hyades::cli::printed_all(hyades::cli::completion_command(argc - 1, words.data() + 1));
   }
   const std::string program = hyades::core::program_folder() + command.program;
   execv(program.c_str(), words.data());
@@ -126,11 +127,11 @@ int main(int argc, char** argv) {
   const std::string name = argc > 1 ? words[1] : "--help";
   if (name == "--help" || name == "-h" || name == "help") {
     print_help();
-    return 0;
+    return hyades::cli::printed_all(0);
   }
   if (name == "--version" || name == "version") {
     std::printf("hyades %s\n", hyades::core::kVersion);
-    return 0;
+    return hyades::cli::printed_all(0);
   }
   std::vector<std::string> names;
   for (const Group& group : groups()) {

@@ -20,7 +20,7 @@ namespace http = boost::beast::http;
 std::optional<uint64_t> length_of(const WebReply& reply) {
   if (reply.source) return reply.source->size();
   if (reply.text) return reply.text->size();
-  return std::nullopt;
+  return reply.topic ? std::nullopt : std::optional<uint64_t>(0);
 }
 
 }  // namespace

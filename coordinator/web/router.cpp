@@ -92,6 +92,7 @@ void Router::answer(WebRequest request, const Answer& answer) const {
     // Views stand behind the '#': who types their address without it is brought there.
     WebReply there;
     there.status = 302;
+    there.type.clear();
     there.headers = {{"Location", "/#" + path}, {"Cache-Control", "no-store"}};
     return answer(there);
   }

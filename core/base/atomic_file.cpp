@@ -85,11 +85,16 @@ Status replace_file(const std::string& path,
 
   Temporary temporary{temporary_name(target)};
   if (const Status written = write(temporary.path); !written) {
-    const std::string& message = written.error().message;
+    std::string message = written.error().message;
+    // Who reads it has never heard of the other name.
+    for (size_t at = message.find(temporary.path); at != std::string::npos;
+         at = message.find(temporary.path, at)) {
+      message.replace(at, temporary.path.size(), path);
+    }
     // Encoders often report a failed write without its cause.
     const std::string full = io_reason(ENOSPC);
     const bool add_cause = disk_is_full(folder) && message.find(full) == std::string::npos;
-    return add_cause ? Error{message + " (" + full + ")"} : written.error();
+    return Error{add_cause ? message + " (" + full + ")" : message};
   }
   {
     const Descriptor handle = open_file(temporary.path, O_RDWR);

@@ -64,6 +64,9 @@ std::optional<std::string> closest_name(std::string_view name,
     if (candidate.empty() || candidate.size() > kLongestName) continue;
     const size_t allowed = std::max<size_t>(1, std::max(name.size(), candidate.size()) / 3);
     if (without_joints(candidate) == joined) return candidate;
+    const bool is_plural =
+        candidate.ends_with('s') && candidate.substr(0, candidate.size() - 1) == name;
+    if (is_plural) return candidate;
     const size_t distance = edit_distance(name, candidate);
     // A single letter is not a misspelling of another one.
     const bool near = distance <= allowed && distance < std::max(name.size(), candidate.size());

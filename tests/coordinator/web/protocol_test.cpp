@@ -105,6 +105,7 @@ TEST(Protocol, ABrowserThatAsksForNoPageIsBroughtToTheOneThatSaysSo) {
     const auto there = world.client->get(path, browser);
     EXPECT_EQ(there.status, 302) << path;
     EXPECT_EQ(there.headers.at("location"), std::string("/#") + path);
+    EXPECT_EQ(there.headers.at("content-length"), "0") << "or readers wait for an end";
     EXPECT_EQ(world.client->get(path).status, 404) << "programs are told so";
   }
   EXPECT_EQ(world.client->get("/api/v1/nope", browser).status, 404);

@@ -103,6 +103,8 @@ TEST(AtomicFile, FullDiskIsNamed) {
   ASSERT_FALSE(status);
   EXPECT_NE(status.error().message.find("disk is full"), std::string::npos)
       << status.error().message;
+  EXPECT_NE(status.error().message.find(path), std::string::npos);
+  EXPECT_EQ(status.error().message.find(".tmp"), std::string::npos) << "of which nobody knows";
   EXPECT_FALSE(fs::exists(path));
 }
 

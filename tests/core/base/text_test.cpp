@@ -25,6 +25,8 @@ TEST(Text, ClosestName) {
   EXPECT_EQ(closest_name("Conductor", names), "conductor");
   EXPECT_EQ(closest_name("mox", names), "mix");
   EXPECT_EQ(closest_name("velvet", names), std::nullopt);
+  const std::vector<std::string> keys = {"sampler", "samples"};
+  EXPECT_EQ(closest_name("sample", keys), "samples") << "the plural is meant";
   const std::vector<std::string> joined = {"rotate", "rotate_y"};
   EXPECT_EQ(closest_name("rotatey", joined), "rotate_y") << "as it is spoken";
   EXPECT_EQ(closest_name("", names), std::nullopt);
