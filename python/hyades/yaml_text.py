@@ -24,7 +24,7 @@ def scalar(value: Any) -> str:
     if isinstance(value, bool):
         return "true" if value else "false"
     if isinstance(value, (int, float)):
-        return repr(value)
+        return repr(float(value)) if isinstance(value, float) else repr(value)  # numpy's are floats, too
     if _PLAIN.fullmatch(value) and value.lower() not in _OTHER_THAN_TEXT:
         return str(value)
     return json.dumps(value, ensure_ascii=False)

@@ -101,4 +101,4 @@ def _heat(translator: Translator, output: Output) -> Any:
     # The law of Stefan and Boltzmann, in units of Cycles' own: a millionth. Between none and all of it there is 1.
     strength = STEFAN * 1e-6 / math.pi * (1 - share + share * kelvin**4)
     tint = _color(translator, output, "Blackbody Tint", 1.0)
-    return tuple(strength * part * light for part, light in zip(tint, color_of(kelvin)))
+    return tuple(float(strength * part * light) for part, light in zip(tint, color_of(kelvin)))
