@@ -30,6 +30,19 @@ void replace(std::string& text, std::string_view what, std::string_view by) {
   if (const size_t at = text.find(what); at != std::string::npos) text.replace(at, what.size(), by);
 }
 
+std::string host_of(const std::string& address) { return address.substr(0, address.rfind(':')); }
+
+/// The network of so many bits that an IPv6 address is in; empty of others.
+std::string network_of(const std::string& address, size_t bits) {
+  const std::string host = host_of(address);
+  if (!host.starts_with('[') || !host.ends_with(']')) return {};
+  auto bytes = ipv6(host.substr(1, host.size() - 2));
+  if (!bytes) return {};
+  std::fill(bytes->begin() + static_cast<ptrdiff_t>(bits / 8), bytes->end(),
+            static_cast<unsigned char>(0));
+  return text_of(AF_INET6, bytes->data()) + "/" + std::to_string(bits);
+}
+
 }  // namespace
 
 HostAndPort split_address(const std::string& address) {
@@ -65,13 +78,10 @@ std::string address_of_peer(std::string_view peer) {
 }
 
 std::string neighbourhood_of(const std::string& address) {
-  const std::string host = address.substr(0, address.rfind(':'));
-  if (!host.starts_with('[') || !host.ends_with(']')) return host;
-  auto bytes = ipv6(host.substr(1, host.size() - 2));
-  if (!bytes) return host;
-  constexpr size_t kNetwork = 8;
-  std::fill(bytes->begin() + kNetwork, bytes->end(), static_cast<unsigned char>(0));
-  return text_of(AF_INET6, bytes->data()) + "/64";
+  const std::string network = network_of(address, 64);
+  return network.empty() ? host_of(address) : network;
 }
+
+std::string site_of(const std::string& address) { return network_of(address, 48); }
 
 }  // namespace hyades::coordinator

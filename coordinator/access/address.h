@@ -25,4 +25,8 @@ std::string address_of_peer(std::string_view peer);
 /// IPv6 one, of which anybody who has one address has them all. `address` as address_text() has it.
 std::string neighbourhood_of(const std::string& address);
 
+/// The /48 network of an IPv6 address, as one customer of a network may have; empty of IPv4.
+/// `address` as address_text() has it.
+std::string site_of(const std::string& address);
+
 }  // namespace hyades::coordinator

@@ -86,6 +86,27 @@ int list_error(const Told& told) {
   return error;
 }
 
+/// Whether the kernel has a name of its own for each user here. In a user namespace it calls all
+/// those that are not mapped by one number (user_namespaces(7)), which may be ours too.
+bool are_all_users_mapped() {
+  std::ifstream map("/proc/self/uid_map");
+  uint64_t inside = 1, outside = 1, count = 0;
+  map >> inside >> outside >> count;
+  return inside == 0 && count >= 0xffffffff;
+}
+
+uid_t overflow_user() {
+  uid_t number = 65534;
+  std::ifstream("/proc/sys/kernel/overflowuid") >> number;
+  return number;
+}
+
+/// The user of this number; nothing where many may be meant.
+std::optional<uid_t> one_user(uid_t user) {
+  static const uid_t kOfMany = overflow_user();
+  return user != kOfMany || are_all_users_mapped() ? std::optional(user) : std::nullopt;
+}
+
 /// Who holds the end at `peer` of the connection from there to `own`; nothing where the kernel
 /// knows none, or cannot tell.
 std::optional<uid_t> holder(const Place& peer, const Place& own) {
@@ -105,7 +126,7 @@ std::optional<uid_t> holder(const Place& peer, const Place& own) {
       told->found.idiag_state != kEstablished || told->found.idiag_inode == 0) {
     return std::nullopt;
   }
-  return told->found.idiag_uid;
+  return one_user(told->found.idiag_uid);
 }
 
 /// Whether the kernel can tell at all: one that was built without says of each connection that
@@ -136,6 +157,14 @@ std::optional<Place> read_row(const std::string& text) {
   return place;
 }
 
+/// The group of all users of this machine but our own.
+constexpr const char* kOthers = "users of this machine";
+
+Neighbour neighbour_of_this_machine(uid_t user, const std::string& host) {
+  if (user == ::geteuid() || user == 0) return {"this user at " + host, "", true};
+  return {"user " + std::to_string(user), kOthers};
+}
+
 std::string text_of(const Place& place) {
   std::array<char, INET6_ADDRSTRLEN> host{};
   (void)::inet_ntop(place.family, place.host.data(), host.data(), host.size());
@@ -160,7 +189,7 @@ std::optional<uid_t> read_table(const std::string& peer, const std::string& own)
       if (state != "01" || inode == 0) continue;  // not established, or nobody's
       const auto from = read_row(local);
       const auto to = read_row(remote);
-      if (from && to && text_of(*from) == peer && text_of(*to) == own) return user;
+      if (from && to && text_of(*from) == peer && text_of(*to) == own) return one_user(user);
     }
   }
   return std::nullopt;
@@ -205,16 +234,16 @@ std::string own_end(int socket) {
 Neighbour neighbour_at(const std::string& peer, int socket) {
   const std::string own = own_end(socket);
   const std::string from = split_address(peer).host;
-  const bool loopback = from.starts_with("127.") || from == "::1";
-  if (!loopback && from != split_address(own).host) return {neighbourhood_of(peer)};
   const auto there = read_place(peer);
   const auto here = read_place(own);
   const bool whole = there && here && there->family == here->family;
+  // He may come by any address that this machine has.
   const auto user = whole ? holder(*there, *here) : std::nullopt;
-  if (!user) return {"this machine"};
-  const bool is_own = *user == ::geteuid() || *user == 0;
-  if (is_own) return {"this user at " + from, true};
-  return {"user " + std::to_string(*user)};
+  if (user) return neighbour_of_this_machine(*user, from);
+  const bool is_local =
+      from.starts_with("127.") || from == "::1" || from == split_address(own).host;
+  return is_local ? Neighbour{"this machine", kOthers}
+                  : Neighbour{neighbourhood_of(peer), site_of(peer)};
 }
 
 }  // namespace hyades::coordinator

@@ -29,6 +29,9 @@ std::string own_end(int socket);
 /// Who counts as one caller where connections are bounded.
 struct Neighbour {
   std::string name;
+  /// Several that may be one: other users of this machine, of whom one may make many (user
+  /// namespaces), or site_of() an address; empty: none.
+  std::string group{};
   bool is_own_user = false;  ///< this process's user or root, on this machine
 };
 

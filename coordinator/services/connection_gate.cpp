@@ -322,7 +322,8 @@ void ConnectionGate::take(core::Descriptor socket, std::string address) {
   }
   const Id id = next_id_++;
   if (!watch(poll_, EPOLL_CTL_ADD, connection.socket, EPOLLRDHUP | EPOLLET, id)) return;
-  strangers_.come(id, neighbour_at(connection.address, connection.socket.get()).name);
+  const Neighbour neighbour = neighbour_at(connection.address, connection.socket.get());
+  strangers_.come(id, neighbour.name, neighbour.is_own_user);
   by_address_[connection.address] = id;  // one before it from there was known, and is ending
   connections_.emplace(id, std::move(connection));
 }

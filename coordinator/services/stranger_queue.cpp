@@ -10,9 +10,9 @@ StrangerQueue::StrangerQueue(const Limits& limits) : limits_(limits) {
   limits_.kept = std::min(limits_.kept, limits_.inside / 3);
 }
 
-void StrangerQueue::come(Id id, const std::string& neighbourhood) {
+void StrangerQueue::come(Id id, const std::string& neighbourhood, bool trusted) {
   const auto [of, is_new] = neighbourhoods_.try_emplace(neighbourhood);
-  if (is_new) of->second.trusted = is_trusted(neighbourhood);
+  if (is_new) of->second.trusted = trusted || trusted_.contains(neighbourhood);
   std::list<Id>& waiting = of->second.waiting;
   if (waiting.empty()) {
     of->second.turn = ++last_turn_;
@@ -61,7 +61,7 @@ void StrangerQueue::know(Id id, Time now) {
   if (found == strangers_.end()) return;
   const auto of = found->second.of;
   Neighbourhood& one = of->second;
-  trust(of->first, now);
+  trusted_.trust(of->first, now);
   if (!one.trusted) {
     turns_.erase(one.turn);
     one.trusted = true;
@@ -149,18 +149,6 @@ bool StrangerQueue::is_waited_for(const Neighbourhood& one) const {
 }
 
 /// In two generations, so that nothing has to be looked through.
-void StrangerQueue::trust(const std::string& neighbourhood, Time now) {
-  if (trusted_.size() >= limits_.trusted || now - trusted_since_ >= limits_.trust) {
-    trusted_before_ = std::exchange(trusted_, {});
-    trusted_since_ = now;
-  }
-  trusted_.insert(neighbourhood);
-}
-
-bool StrangerQueue::is_trusted(const std::string& neighbourhood) const {
-  return trusted_.contains(neighbourhood) || trusted_before_.contains(neighbourhood);
-}
-
 StrangerQueue::Time StrangerQueue::expiry(Id id, Time since) const {
   const bool pressed = gone_.contains(id) || is_waited_for(strangers_.at(id).of->second);
   return since + (pressed ? limits_.patience_when_full : limits_.patience);

@@ -13,6 +13,8 @@
 #include <utility>
 #include <vector>
 
+#include "coordinator/access/trusted_neighbours.h"
+
 namespace hyades::coordinator {
 
 /// Who of those that nobody knows yet may come in, who waits, and who has to go: bounds in all and
@@ -39,8 +41,8 @@ class StrangerQueue {
 
   explicit StrangerQueue(const Limits& limits);
 
-  /// One comes, and waits.
-  void come(Id id, const std::string& neighbourhood);
+  /// One comes, and waits; `trusted`: whether or not anybody of there has become known.
+  void come(Id id, const std::string& neighbourhood, bool trusted = false);
   /// Lets the next one in, if one may be. Neighbourhoods take turns; of each the last that came is
   /// the first: who has waited for long has given up, or soon will.
   std::optional<Id> let_in(Time now);
@@ -92,8 +94,6 @@ class StrangerQueue {
   }
   /// Whose turn it is, of those of whom one more may be inside.
   Neighbourhoods::iterator next_in_turn();
-  void trust(const std::string& neighbourhood, Time now);
-  bool is_trusted(const std::string& neighbourhood) const;
   bool is_waited_for(const Neighbourhood& one) const;
   Time expiry(Id id, Time since) const;
   void stop_waiting(const Stranger& stranger);
@@ -109,10 +109,7 @@ class StrangerQueue {
   Turns turns_;          ///< of those that are not trusted
   Turns trusted_turns_;  ///< of those that are
   size_t trusted_inside_ = 0;
-  /// Neighbourhoods that are trusted: since `trusted_since_`, and those of the time before.
-  std::set<std::string> trusted_;
-  std::set<std::string> trusted_before_;
-  Time trusted_since_{};
+  TrustedNeighbours trusted_;
   std::set<std::pair<size_t, const std::string*>> by_number_;  ///< the same, by how many wait
 };
 

@@ -182,6 +182,7 @@ class ConnectionOver final : public Connection,
     if (admitted.refusal) return send_away(*admitted.refusal);
     caller_ = request_.caller;
     const bool stranger = caller_.role == v1::ROLE_UNSPECIFIED;
+    if (!stranger) world_.count.know(owner_, std::chrono::steady_clock::now());
     if (world_.one_request || (stranger && ahead_ >= kMostAhead)) keep_alive_ = false;
     take_body(admitted.most_bytes);
   }
@@ -283,7 +284,8 @@ class ConnectionOver final : public Connection,
   /// What others hold, too, is counted where it is made.
   void count_answer() {
     uint64_t bytes = reply_.source ? reply_.source->bytes_kept() : 0;
-    if (reply_.text && reply_.text.use_count() == 1 && reply_.text->size() > kSmallAnswer) {
+    if (reply_.text && !reply_.is_counted && reply_.text.use_count() == 1 &&
+        reply_.text->size() > kSmallAnswer) {
       bytes = reply_.text->size();
     }
     answer_share_.emplace(world_.answers, owner_of(caller_));

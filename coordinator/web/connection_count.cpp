@@ -5,23 +5,37 @@
 namespace hyades::coordinator {
 
 bool ConnectionCount::may_come(const Neighbour& owner) const {
-  if (open_ >= most_) return false;
+  const size_t kept = most_ / 8;
+  const bool known = known_.contains(owner.name);
+  const size_t most = owner.is_own_user ? most_ : known ? most_ - kept / 4 : most_ - kept;
+  if (open_ >= most) return false;
   if (owner.is_own_user) return true;
-  const auto known = open_of_.find(owner.name);
-  if (known == open_of_.end()) return true;
-  return known->second < std::max(sure_, std::min(most_of_one_, (most_ - open_) / 4));
+  if (!known && !owner.group.empty() && count_of(owner.group) >= most_ / 2) return false;
+  return count_of(owner.name) < std::max(sure_, std::min(most_of_one_, (most - open_) / 4));
+}
+
+size_t ConnectionCount::count_of(const std::string& whose) const {
+  const auto found = open_of_.find(whose);
+  return found == open_of_.end() ? 0 : found->second;
 }
 
 void ConnectionCount::enter(const Neighbour& owner) {
   ++open_;
-  ++open_of_[owner.name];
+  add(owner.name, true);
+  if (!owner.group.empty()) add(owner.group, true);
 }
 
 void ConnectionCount::leave(const Neighbour& owner) {
-  const auto known = open_of_.find(owner.name);
-  if (known == open_of_.end()) return;
+  if (!open_of_.contains(owner.name)) return;
   --open_;
-  if (--known->second == 0) open_of_.erase(known);
+  add(owner.name, false);
+  if (!owner.group.empty()) add(owner.group, false);
+}
+
+void ConnectionCount::add(const std::string& whose, bool comes) {
+  size_t& count = open_of_[whose];
+  count += comes ? 1 : -1;
+  if (count == 0) open_of_.erase(whose);
 }
 
 }  // namespace hyades::coordinator

@@ -5,31 +5,40 @@
 #include <string>
 
 #include "coordinator/access/peer_user.h"
+#include "coordinator/access/trusted_neighbours.h"
 
 namespace hyades::coordinator {
 
 /// How many connections are open, and of whom, so that nobody takes all of them. Not thread-safe.
 class ConnectionCount {
  public:
-  /// At most `most` are open at once, and of one owner (neighbour_at()) at most `most_of_one` and a
-  /// quarter of what is left, but `sure` in any case. So a few owners cannot take all: of four that
-  /// try each gets an eighth, and one who comes later as much as they have.
+  /// At most `most` are open at once, an eighth of them for those who are known alone, and a
+  /// quarter of that for our own user. Of a group half may be open, and of one owner
+  /// (neighbour_at()) at most `most_of_one` and a quarter of what is left, but `sure` in any case.
+  /// So a few owners cannot take all: of four that try each gets an eighth, and one who comes later
+  /// as much as they have.
   ConnectionCount(size_t most, size_t most_of_one, size_t sure)
       : most_(most), most_of_one_(most_of_one), sure_(sure) {}
 
   /// Whether the owner may have one more. Our own user, who may run a proxy, may have all.
   bool may_come(const Neighbour& owner) const;
+  /// The owner has shown a token, or needs none.
+  void know(const Neighbour& owner, TrustedNeighbours::Time now) { known_.trust(owner.name, now); }
   /// Counts one that has come.
   void enter(const Neighbour& owner);
   /// Counts one that has gone; once for each that has entered.
   void leave(const Neighbour& owner);
 
  private:
+  size_t count_of(const std::string& whose) const;
+  void add(const std::string& whose, bool comes);
+
   size_t most_;
   size_t most_of_one_;
   size_t sure_;
   size_t open_ = 0;
-  std::map<std::string, size_t> open_of_;
+  std::map<std::string, size_t> open_of_;  ///< by owner, and by group
+  TrustedNeighbours known_;
 };
 
 }  // namespace hyades::coordinator

@@ -82,6 +82,7 @@ struct WebReply {
   std::string type = "application/json; charset=utf-8";
   std::vector<std::pair<std::string, std::string>> headers;
   std::shared_ptr<const std::string> text;  ///< the whole body, or
+  bool is_counted = false;                  ///< who made `text` counts it for as long as it is held
   std::shared_ptr<BodySource> source;       ///< where it comes from, or
   std::shared_ptr<LiveTopic> topic;         ///< what it tells of until the reader goes
 };

@@ -63,6 +63,7 @@ WebReply KeptPictures::reply_for(const farm::ByteBudget::Owner& reader, WebReply
   };
   const auto counted = std::make_shared<Counted>(held_, reader, std::move(reply.text));
   reply.text = std::shared_ptr<const std::string>(counted, counted->text.get());
+  reply.is_counted = true;
   return reply;
 }
 

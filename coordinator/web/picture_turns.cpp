@@ -45,10 +45,15 @@ void PictureTurns::line_up(JobAndFrame id, const std::string& owner) {
 /// Whether the owner may wait for one more of the frame: what somebody waits for already is free.
 bool PictureTurns::may_want(const WantedPictures& wanted, const AskedPicture& asked,
                             const std::string& owner) {
+  const auto is_own = [&](const PictureAsker& asker) { return asker.owner.name == owner; };
+  int own_askers = 0;
+  for (const auto& [picture, askers] : wanted) {
+    own_askers += static_cast<int>(std::count_if(askers.begin(), askers.end(), is_own));
+  }
+  if (!owner.empty() && own_askers >= kMostAskersOfOne) return false;
   if (wanted.contains(asked)) return true;
   const auto own = std::count_if(wanted.begin(), wanted.end(), [&](const auto& one) {
-    return std::any_of(one.second.begin(), one.second.end(),
-                       [&](const PictureAsker& asker) { return asker.owner.name == owner; });
+    return std::any_of(one.second.begin(), one.second.end(), is_own);
   });
   return wanted.size() < kMostOfFrame && static_cast<size_t>(own) < kMostOfFrameOfOne;
 }

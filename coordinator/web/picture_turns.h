@@ -54,6 +54,8 @@ class PictureTurns {
   /// Different pictures of one frame that wait, and of those that one caller waits for.
   static constexpr size_t kMostOfFrame = 32;
   static constexpr size_t kMostOfFrameOfOne = 8;
+  /// How often one caller may wait for the same pictures of a frame.
+  static constexpr int kMostAskersOfOne = 64;
 
   /// `longest`: after which another's turn begins, once a picture is made.
   explicit PictureTurns(std::chrono::milliseconds longest) : longest_(longest) {}

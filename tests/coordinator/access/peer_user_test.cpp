@@ -8,6 +8,7 @@
 #include <linux/netlink.h>
 #include <linux/seccomp.h>
 #include <netinet/in.h>
+#include <sched.h>
 #include <sys/prctl.h>
 #include <sys/socket.h>
 #include <sys/syscall.h>
@@ -140,6 +141,30 @@ TEST(PeerUser, OfEndsThatNobodyHoldsIsNobody) {
   EXPECT_EQ(told_to(forbid_questions, not_accepted, text_of(caller)), ::geteuid());
 }
 
+/// A user namespace in which our own user has the number that all others have there.
+bool become_one_of_many() {
+  if (::unshare(CLONE_NEWUSER) != 0) return false;
+  const core::Descriptor map(::open("/proc/self/uid_map", O_WRONLY | O_CLOEXEC));
+  const std::string line = std::to_string(kAnother) + " 0 1";
+  return ::write(map.get(), line.data(), line.size()) == static_cast<ssize_t>(line.size());
+}
+
+TEST(PeerUser, OfManyUsersIsNobody) {
+  if (::geteuid() != 0) GTEST_SKIP() << "only root can be two users";
+  const core::Descriptor listener = socket_at("127.0.0.1", 0, true);
+  const auto another = [&] {
+    const AsAnother as;
+    core::Descriptor caller = socket_at("127.0.0.1", 0, false);
+    EXPECT_TRUE(join(caller, listener));
+    return caller;
+  }();
+  const std::string peer = text_of(another);
+  EXPECT_EQ(user_of_peer(peer, text_of(listener)), kAnother);
+  const auto told = told_to(become_one_of_many, peer, text_of(listener));
+  if (told == uid_t{1}) GTEST_SKIP() << "no user namespaces here";
+  EXPECT_EQ(told, kNobody);
+}
+
 TEST(PeerUser, NeighboursOfThisMachineAreItsUsers) {
   if (::geteuid() != 0) GTEST_SKIP() << "only root can be two users";
   const core::Descriptor listener = socket_at("0.0.0.0", 0, true);
@@ -157,6 +182,8 @@ TEST(PeerUser, NeighboursOfThisMachineAreItsUsers) {
   EXPECT_EQ(neighbour("127.0.0.1", true).name, neighbour("127.0.0.2", true).name)
       << "he has all addresses of this machine";
   EXPECT_NE(neighbour("127.0.0.1", true).name, neighbour("127.0.0.1", false).name);
+  EXPECT_NE(neighbour("127.0.0.1", true).group, "");
+  EXPECT_EQ(neighbour("127.0.0.1", false).group, "");
 }
 
 TEST(PeerUser, IsWhoHoldsTheOtherEnd) {

@@ -8,7 +8,7 @@ namespace {
 
 const Neighbour kOne{"192.0.2.1"};
 const Neighbour kOther{"192.0.2.2"};
-const Neighbour kOwn{"this user at 127.0.0.1", true};
+const Neighbour kOwn{"this user at 127.0.0.1", "", true};
 
 TEST(ConnectionCount, NobodyTakesAll) {
   ConnectionCount count(60, 2, 1);
@@ -37,6 +37,30 @@ TEST(ConnectionCount, AnotherUserOfThisMachineTakesNotAll) {
   int came = 0;
   for (; count.may_come(other); ++came) count.enter(other);
   EXPECT_LE(came, 15);
+  EXPECT_TRUE(count.may_come(kOwn));
+}
+
+/// One customer's network, or one user's many, takes half at most.
+TEST(ConnectionCount, AGroupTakesHalf) {
+  ConnectionCount count(4000, 1000, 8);
+  int came = 0;
+  for (int i = 0; i < 600; ++i) {
+    const Neighbour one{"2001:db8:0:" + std::to_string(i) + "::/64", "2001:db8::/48"};
+    for (int k = 0; k < 8 && count.may_come(one); ++k, ++came) count.enter(one);
+  }
+  EXPECT_EQ(came, 2000);
+  EXPECT_TRUE(count.may_come(kOne));
+}
+
+TEST(ConnectionCount, WhoIsKnownHasPlacesThatStrangersDoNotReach) {
+  ConnectionCount count(4000, 1000, 8);
+  count.know(kOne, {});
+  for (int i = 0; i < 1000; ++i) {
+    const Neighbour stranger{"stranger " + std::to_string(i)};
+    for (int k = 0; k < 8 && count.may_come(stranger); ++k) count.enter(stranger);
+  }
+  EXPECT_FALSE(count.may_come(kOther));
+  EXPECT_TRUE(count.may_come(kOne));
   EXPECT_TRUE(count.may_come(kOwn));
 }
 

@@ -712,6 +712,8 @@ TEST_F(UnreadPictures, WhatOthersDoNotReadIsTheirs) {
     unread.push_back(answer_to("mallory", width));
   }
   EXPECT_EQ(unread.front().status, 200);
+  EXPECT_TRUE(unread.front().is_counted)
+      << "and not once more by the connection, which has less room";
   EXPECT_EQ(unread.back().status, 503);
 }
 
