@@ -72,7 +72,7 @@ class ScriptSource : public SceneSource {
     return key;
   }
 
-  Result<YamlPtr> tree_at(const SceneRequest& request) const {
+  Result<YamlPtr> tree_at(const SceneRequest& request) const HYADES_REQUIRES(mutex_) {
     if (!request.beside.empty()) {
       return Error{script_ +
                    ": what a script says names files from the script's folder on, "
@@ -91,7 +91,8 @@ class ScriptSource : public SceneSource {
     return tree_of_frames(run, frames);
   }
 
-  Result<YamlPtr> tree_of_frames(ScriptRequest& run, const FramesDesc& frames) const {
+  Result<YamlPtr> tree_of_frames(ScriptRequest& run, const FramesDesc& frames) const
+      HYADES_REQUIRES(mutex_) {
     if (frames.last - int64_t{frames.first} >= kMostFrames) {
       return Error{
           fmt::format("{}: the script asks for the frame, and the job has {} frames, "
@@ -119,7 +120,7 @@ class ScriptSource : public SceneSource {
     return joined;
   }
 
-  Result<ScriptResult> run_once(const ScriptRequest& run) const {
+  Result<ScriptResult> run_once(const ScriptRequest& run) const HYADES_REQUIRES(mutex_) {
     auto result = run_script(run);
     if (!result) return result;
     for (auto& [name, bytes] : result->made) {
