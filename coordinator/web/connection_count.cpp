@@ -10,7 +10,9 @@ bool ConnectionCount::may_come(const Neighbour& owner) const {
   const size_t most = owner.is_own_user ? most_ : known ? most_ - kept / 4 : most_ - kept;
   if (open_ >= most) return false;
   if (owner.is_own_user) return true;
-  if (!known && !owner.group.empty() && count_of(owner.group) >= most_ / 2) return false;
+  // Of those who are known, too: one token makes all of a group known.
+  const size_t most_of_group = most_ / 2 + (known ? kept / 2 : 0);
+  if (!owner.group.empty() && count_of(owner.group) >= most_of_group) return false;
   return count_of(owner.name) < std::max(sure_, std::min(most_of_one_, (most - open_) / 4));
 }
 

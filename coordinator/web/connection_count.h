@@ -13,10 +13,10 @@ namespace hyades::coordinator {
 class ConnectionCount {
  public:
   /// At most `most` are open at once, an eighth of them for those who are known alone, and a
-  /// quarter of that for our own user. Of a group half may be open, and of one owner
-  /// (neighbour_at()) at most `most_of_one` and a quarter of what is left, but `sure` in any case.
-  /// So a few owners cannot take all: of four that try each gets an eighth, and one who comes later
-  /// as much as they have.
+  /// quarter of that for our own user. Of a group half may be open, and half of that eighth, and of
+  /// one owner (neighbour_at()) at most `most_of_one` and a quarter of what is left, but `sure` in
+  /// any case. So a few owners cannot take all: of four that try each gets an eighth, and one who
+  /// comes later as much as they have.
   ConnectionCount(size_t most, size_t most_of_one, size_t sure)
       : most_(most), most_of_one_(most_of_one), sure_(sure) {}
 

@@ -52,6 +52,19 @@ TEST(ConnectionCount, AGroupTakesHalf) {
   EXPECT_TRUE(count.may_come(kOne));
 }
 
+/// By one token all of a group are known.
+TEST(ConnectionCount, AGroupThatIsKnownLeavesPlaces) {
+  ConnectionCount count(4000, 1000, 8);
+  count.know(kOne, {});
+  for (int i = 0; i < 600; ++i) {
+    const Neighbour one{"user " + std::to_string(i), "users of this machine"};
+    count.know(one, {});
+    for (int k = 0; k < 1000 && count.may_come(one); ++k) count.enter(one);
+  }
+  EXPECT_TRUE(count.may_come(kOne));
+  EXPECT_TRUE(count.may_come(kOwn));
+}
+
 TEST(ConnectionCount, WhoIsKnownHasPlacesThatStrangersDoNotReach) {
   ConnectionCount count(4000, 1000, 8);
   count.know(kOne, {});
