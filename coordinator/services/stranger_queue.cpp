@@ -6,13 +6,17 @@
 
 namespace hyades::coordinator {
 
-StrangerQueue::StrangerQueue(const Limits& limits) : limits_(limits) {
+StrangerQueue::StrangerQueue(const Limits& limits)
+    : limits_(limits), trusted_(limits.trust, limits.trusted) {
   limits_.kept = std::min(limits_.kept, limits_.inside / 3);
 }
 
-void StrangerQueue::come(Id id, const std::string& neighbourhood, bool trusted) {
+void StrangerQueue::come(Id id, const std::string& neighbourhood, bool own) {
   const auto [of, is_new] = neighbourhoods_.try_emplace(neighbourhood);
-  if (is_new) of->second.trusted = trusted || trusted_.contains(neighbourhood);
+  if (is_new) {
+    of->second.own = own;
+    of->second.trusted = own || trusted_.contains(neighbourhood);
+  }
   std::list<Id>& waiting = of->second.waiting;
   if (waiting.empty()) {
     of->second.turn = ++last_turn_;
@@ -26,7 +30,7 @@ void StrangerQueue::come(Id id, const std::string& neighbourhood, bool trusted) 
 }
 
 std::optional<StrangerQueue::Id> StrangerQueue::let_in(Time now) {
-  if (inside_.size() >= limits_.inside) return std::nullopt;
+  if (inside_.size() >= most_inside()) return std::nullopt;
   const auto of = next_in_turn();
   if (of == neighbourhoods_.end()) return std::nullopt;
   Neighbourhood& one = of->second;
@@ -129,6 +133,8 @@ StrangerQueue::Turns::const_iterator StrangerQueue::first_not_full(const Turns& 
 }
 
 StrangerQueue::Neighbourhoods::iterator StrangerQueue::next_in_turn() {
+  const auto own = first_not_full(own_turns_);
+  if (own != own_turns_.cend()) return own->second;
   const auto trusted = first_not_full(trusted_turns_);
   const auto other = others_have_all() ? turns_.cend() : first_not_full(turns_);
   if (trusted == trusted_turns_.cend()) {
@@ -144,6 +150,7 @@ bool StrangerQueue::is_waited_for(const Neighbourhood& one) const {
   if (is_full(one) && !one.waiting.empty()) return true;
   const bool full = inside_.size() >= limits_.inside;
   if (full && first_not_full(trusted_turns_) != trusted_turns_.cend()) return true;
+  if (full && first_not_full(own_turns_) != own_turns_.cend()) return true;
   const bool others = others_have_all() ? !one.trusted : full;
   return others && first_not_full(turns_) != turns_.cend();
 }

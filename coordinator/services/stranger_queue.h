@@ -31,6 +31,7 @@ class StrangerQueue {
     size_t inside = 24;
     size_t inside_of_one = 12;  ///< of one neighbourhood
     size_t kept = 8;            ///< of those inside, for neighbourhoods that are trusted
+    size_t own = 2;             ///< besides those inside, for our own user
     size_t waiting = 4000;
     std::chrono::milliseconds patience{10'000};  ///< with one who is inside, until known
     std::chrono::milliseconds patience_when_full{
@@ -41,8 +42,9 @@ class StrangerQueue {
 
   explicit StrangerQueue(const Limits& limits);
 
-  /// One comes, and waits; `trusted`: whether or not anybody of there has become known.
-  void come(Id id, const std::string& neighbourhood, bool trusted = false);
+  /// One comes, and waits; `own`: it is our own user, who comes before all others, and for whom
+  /// there are places beside theirs.
+  void come(Id id, const std::string& neighbourhood, bool own = false);
   /// Lets the next one in, if one may be. Neighbourhoods take turns; of each the last that came is
   /// the first: who has waited for long has given up, or soon will.
   std::optional<Id> let_in(Time now);
@@ -72,6 +74,7 @@ class StrangerQueue {
     size_t inside = 0;
     std::list<Id> waiting{};  ///< in the order in which they came
     bool trusted = false;
+    bool own = false;
     int64_t turn = 0;  ///< key in turns_of(), while somebody waits; negative: out of turn
     Time turn_began;   ///< when one came in in turn
   };
@@ -83,7 +86,12 @@ class StrangerQueue {
 
   /// Those of whom somebody waits, by whose turn it is.
   using Turns = std::map<int64_t, Neighbourhoods::iterator>;
-  Turns& turns_of(const Neighbourhood& one) { return one.trusted ? trusted_turns_ : turns_; }
+  Turns& turns_of(const Neighbourhood& one) {
+    return one.own ? own_turns_ : one.trusted ? trusted_turns_ : turns_;
+  }
+  size_t most_inside() const {
+    return limits_.inside + (first_not_full(own_turns_) == own_turns_.cend() ? 0 : limits_.own);
+  }
   void set_turn(Neighbourhoods::iterator one, int64_t turn);
 
   bool is_full(const Neighbourhood& one) const { return one.inside >= limits_.inside_of_one; }
@@ -108,6 +116,7 @@ class StrangerQueue {
   int64_t first_turn_ = 0;
   Turns turns_;          ///< of those that are not trusted
   Turns trusted_turns_;  ///< of those that are
+  Turns own_turns_;      ///< of our own user
   size_t trusted_inside_ = 0;
   TrustedNeighbours trusted_;
   std::set<std::pair<size_t, const std::string*>> by_number_;  ///< the same, by how many wait

@@ -213,6 +213,25 @@ TEST(StrangerQueue, PlacesAreKeptForThoseWhoHaveBeenKnown) {
   EXPECT_EQ(let_in_all(queue, kBegin + 2s).size(), 24U);
 }
 
+/// However many neighbourhoods somebody with a token has made trusted.
+TEST(StrangerQueue, OurOwnUserComesFirstAndHasPlacesOfHisOwn) {
+  StrangerQueue queue(few());
+  for (StrangerQueue::Id id = 1; id <= 8; ++id) queue.come(id, "crowd " + std::to_string(id));
+  EXPECT_EQ(let_in_all(queue).size(), 4U);
+  queue.come(9, "own", true);
+  queue.come(10, "own", true);
+  queue.come(11, "own", true);
+  EXPECT_EQ(let_in_all(queue), (Ids{11, 10})) << "beside the four of others";
+  queue.leave(11);
+  EXPECT_EQ(let_in_all(queue), (Ids{9}));
+  queue.leave(10);
+  queue.leave(9);
+  EXPECT_EQ(let_in_all(queue), Ids{}) << "these places are nobody else's";
+  queue.leave(1);
+  queue.come(12, "own", true);
+  EXPECT_EQ(let_in_all(queue).front(), 12U) << "before all who have waited";
+}
+
 TEST(StrangerQueue, TrustIsForgottenInTime) {
   StrangerQueue::Limits limits;
   limits.trusted = 2;
