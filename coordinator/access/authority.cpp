@@ -1,7 +1,5 @@
 #include "coordinator/access/authority.h"
 
-#include <unistd.h>
-
 #include <algorithm>
 #include <chrono>
 #include <cstddef>
@@ -58,7 +56,7 @@ bool is_owners(const std::string& peer, const OwnEnd& own_end) {
   if (own.empty()) return false;
   const std::optional<uid_t> user = user_of_peer(peer, own);
   // Else it may have been another's, who has come from the same port since.
-  return user && (*user == ::geteuid() || *user == 0) && own_end() == own;
+  return user && is_own_user(*user) && own_end() == own;
 }
 
 }  // namespace

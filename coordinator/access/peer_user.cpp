@@ -161,7 +161,7 @@ std::optional<Place> read_row(const std::string& text) {
 constexpr const char* kOthers = "users of this machine";
 
 Neighbour neighbour_of_this_machine(uid_t user, const std::string& host) {
-  if (user == ::geteuid() || user == 0) return {"this user at " + host, "", true};
+  if (is_own_user(user)) return {"this user at " + host, "", true};
   return {"user " + std::to_string(user), kOthers};
 }
 
@@ -205,6 +205,8 @@ std::optional<uid_t> user_of_peer(const std::string& peer, const std::string& ow
   // Who is not found has gone mostly, and hears no answer: nobody shall wait for that.
   return kernel_can_tell(from->family) ? std::nullopt : read_table(peer, own);
 }
+
+bool is_own_user(uid_t user) { return user == ::geteuid() || user == 0; }
 
 std::string own_end(int socket) {
   tcp_info info{};

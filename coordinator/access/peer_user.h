@@ -21,6 +21,9 @@ namespace hyades::coordinator {
 /// (/proc/net/tcp, proc_pid_net(5)), which takes milliseconds and more the more there are.
 std::optional<uid_t> user_of_peer(const std::string& peer, const std::string& own);
 
+/// Whether this is the user whose process we are, or root, who may do all that he may.
+bool is_own_user(uid_t user);
+
 /// Our address that this accepted socket is at, as address_text() has it; empty once either side
 /// has ended the connection. Where it is there both before and after user_of_peer() was asked, that
 /// has spoken of this connection: the kernel has no other between the same two ends meanwhile.

@@ -18,6 +18,7 @@ class TrustedNeighbours {
   explicit TrustedNeighbours(std::chrono::hours time = std::chrono::hours(24), size_t most = 4096)
       : time_(time), most_(most) {}
 
+  /// In two generations, so that nothing has to be looked through.
   void trust(const std::string& neighbourhood, Time now) {
     if (now_.size() >= most_ || now - since_ >= time_) {
       before_ = std::exchange(now_, {});

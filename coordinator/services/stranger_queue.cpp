@@ -155,7 +155,6 @@ bool StrangerQueue::is_waited_for(const Neighbourhood& one) const {
   return others && first_not_full(turns_) != turns_.cend();
 }
 
-/// In two generations, so that nothing has to be looked through.
 StrangerQueue::Time StrangerQueue::expiry(Id id, Time since) const {
   const bool pressed = gone_.contains(id) || is_waited_for(strangers_.at(id).of->second);
   return since + (pressed ? limits_.patience_when_full : limits_.patience);

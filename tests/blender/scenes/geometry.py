@@ -66,6 +66,12 @@ def mirrored_and_stretched() -> None:
     primitive("monkey", paint, at=(1.2, 0, 1), turn=(10, 20, 30), scale=(0.7, 1.3, -0.9), smooth=True)
 
 
+def move_into(collection, body) -> None:
+    for parent in body.users_collection:
+        parent.objects.unlink(body)
+    collection.objects.link(body)
+
+
 @scene(samples=128)
 def instanced_collection() -> None:
     lit()
@@ -73,9 +79,7 @@ def instanced_collection() -> None:
     collection = bpy.data.collections.new("Pair")
     for x in (-0.4, 0.4):
         body = primitive("ico_sphere", paint, at=(x, 0, 0.4), radius=0.35, subdivisions=3, smooth=True)
-        for parent in body.users_collection:
-            parent.objects.unlink(body)
-        collection.objects.link(body)
+        move_into(collection, body)
     for i in range(5):
         empty = add(None, f"Place{i}", at=(1.8 * i - 3.6, i % 2, 0), turn=(0, 0, 40 * i), scale=(1, 1, 0.7 + 0.2 * i))
         empty.instance_type, empty.instance_collection = "COLLECTION", collection
@@ -85,10 +89,7 @@ def row_of_copies(made):
     """Cubes by collections on a row of empties, which are returned."""
     lit()
     collection = bpy.data.collections.new("One")
-    body = primitive("cube", made, at=(0, 0, 0.35), size=0.7)
-    for parent in body.users_collection:
-        parent.objects.unlink(body)
-    collection.objects.link(body)
+    move_into(collection, primitive("cube", made, at=(0, 0, 0.35), size=0.7))
     empties = [add(None, f"Place{i}", at=(1.4 * i - 2.8, i % 2, 0), turn=(0, 0, 20 * i)) for i in range(5)]
     for empty in empties:
         empty.instance_type, empty.instance_collection = "COLLECTION", collection

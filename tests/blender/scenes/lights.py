@@ -18,6 +18,13 @@ def point_with_radius() -> None:
     light("POINT", 300, at=(2, -2, 4), shadow_soft_size=0.4)
 
 
+def emission_of(lamp):
+    """The node of a lamp's shader, and the tree that it is in."""
+    lamp.data.use_nodes = True
+    tree = lamp.data.node_tree
+    return next(node for node in tree.nodes if node.type == "EMISSION"), tree
+
+
 def profiled(socket: str, strength: float, **keys):
     """A point lamp that an IES profile makes brighter to one side and above; half a watt of light for each of its own."""
     import bpy
@@ -31,12 +38,10 @@ def profiled(socket: str, strength: float, **keys):
     text = bpy.data.texts.new("lamp.ies")
     text.write("IESNA:LM-63-2002\nTILT=NONE\n" + "\n".join(" ".join(map(str, row)) for row in rows) + "\n")
     lamp = light("POINT", 10, **keys)
-    lamp.data.use_nodes = True
-    tree = lamp.data.node_tree
+    emission, tree = emission_of(lamp)
     profile = tree.nodes.new("ShaderNodeTexIES")
     profile.mode, profile.ies = "INTERNAL", text
     profile.inputs["Strength"].default_value = strength
-    emission = next(node for node in tree.nodes if node.type == "EMISSION")
     tree.links.new(profile.outputs[0], emission.inputs[socket])
     return lamp
 
@@ -114,11 +119,9 @@ def area_of_a_sheared_lamp() -> None:
 def point_with_falloff() -> None:
     room()
     lamp = light("POINT", 3, at=(2, -2, 4), shadow_soft_size=0)
-    lamp.data.use_nodes = True
-    tree = lamp.data.node_tree
+    emission, tree = emission_of(lamp)
     falloff = tree.nodes.new("ShaderNodeLightFalloff")
     falloff.inputs["Strength"].default_value = 90
-    emission = next(node for node in tree.nodes if node.type == "EMISSION")
     tree.links.new(falloff.outputs["Quadratic"], emission.inputs["Strength"])
 
 
