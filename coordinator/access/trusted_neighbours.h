@@ -2,40 +2,40 @@
 
 #include <chrono>
 #include <cstddef>
+#include <map>
 #include <set>
 #include <string>
-#include <utility>
 
 namespace hyades::coordinator {
 
-/// Neighbourhoods of which somebody has shown a token lately: the last thousands of them at least,
-/// and those of a day. Knows no clock. Not thread-safe.
+/// Neighbourhoods of which somebody has shown a token lately, and which: of each token the last
+/// thousands of them at least, and those of a day, so that who shows one token from everywhere
+/// pushes out nobody else's. Knows no clock. Not thread-safe.
 class TrustedNeighbours {
  public:
   using Time = std::chrono::steady_clock::time_point;
 
-  /// Each is trusted for `time` at least, unless more than `most` have come since.
+  /// Each is trusted for `time` at least, unless more than `most` have come since with its token.
   explicit TrustedNeighbours(std::chrono::hours time = std::chrono::hours(24), size_t most = 4096)
       : time_(time), most_(most) {}
 
-  /// In two generations, so that nothing has to be looked through.
-  void trust(const std::string& neighbourhood, Time now) {
-    if (now_.size() >= most_ || now - since_ >= time_) {
-      before_ = std::exchange(now_, {});
-      since_ = now;
-    }
-    now_.insert(neighbourhood);
-  }
-  bool contains(const std::string& neighbourhood) const {
-    return now_.contains(neighbourhood) || before_.contains(neighbourhood);
-  }
+  /// Somebody of there has shown the token of this id (Caller::token_id).
+  void trust(const std::string& neighbourhood, const std::string& token_id, Time now);
+  /// The token that was shown from there last; null where none was. Good until trust() is called.
+  const std::string* token_of(const std::string& neighbourhood) const;
 
  private:
+  /// In two generations, so that what is too old needs not be looked for one by one.
+  struct OfToken {
+    std::set<std::string> now;     ///< since `since`
+    std::set<std::string> before;  ///< of the time before
+    Time since{};
+  };
+
   std::chrono::hours time_;
   size_t most_;
-  std::set<std::string> now_;     ///< since `since_`
-  std::set<std::string> before_;  ///< of the time before
-  Time since_{};
+  std::map<std::string, OfToken> tokens_;
+  std::map<std::string, std::string> token_of_;
 };
 
 }  // namespace hyades::coordinator

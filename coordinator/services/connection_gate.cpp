@@ -126,7 +126,7 @@ void ConnectionGate::mark_known(const std::string& address, const std::string& t
   Connection& connection = connections_.at(id);
   connection.calls = 0;
   if (connection.known) return;
-  strangers_.know(id, std::chrono::steady_clock::now());
+  strangers_.know(id, token_id, std::chrono::steady_clock::now());
   const std::string key = machine_key(token_id, machine);
   if (has_place_for(token_id, key)) {
     connection.known = true;

@@ -14,13 +14,13 @@ StrangerQueue::StrangerQueue(const Limits& limits)
 void StrangerQueue::come(Id id, const std::string& neighbourhood, bool own) {
   const auto [of, is_new] = neighbourhoods_.try_emplace(neighbourhood);
   if (is_new) {
-    of->second.own = own;
-    of->second.trusted = own || trusted_.contains(neighbourhood);
+    const std::string* token_id = trusted_.token_of(neighbourhood);
+    const Rank rank = own ? Rank::own : token_id != nullptr ? Rank::trusted : Rank::other;
+    join(of, rank, own ? "" : token_id != nullptr ? *token_id : neighbourhood);
   }
   std::list<Id>& waiting = of->second.waiting;
   if (waiting.empty()) {
-    of->second.turn = ++last_turn_;
-    turns_of(of->second).emplace(of->second.turn, of);
+    stand_in_line(of, ++last_turn_);
   } else {
     by_number_.erase({waiting.size(), &of->first});
   }
@@ -30,16 +30,17 @@ void StrangerQueue::come(Id id, const std::string& neighbourhood, bool own) {
 }
 
 std::optional<StrangerQueue::Id> StrangerQueue::let_in(Time now) {
-  if (inside_.size() >= most_inside()) return std::nullopt;
-  const auto of = next_in_turn();
-  if (of == neighbourhoods_.end()) return std::nullopt;
+  const std::optional<Next> who = next();
+  if (!who) return std::nullopt;
+  const auto of = who->neighbourhood;
   Neighbourhood& one = of->second;
   const Id id = one.waiting.back();
   if (one.turn > 0) one.turn_began = now;
-  set_turn(of, ++last_turn_);
+  one.party->second.turn = ++last_turn_;
   stop_waiting(strangers_.at(id));
+  if (!one.waiting.empty()) stand_in_line(of, ++last_turn_);
   ++one.inside;
-  if (one.trusted) ++trusted_inside_;
+  if (rank_of(one) != Rank::other) ++trusted_inside_;
   inside_.emplace(id, now);
   return id;
 }
@@ -60,21 +61,24 @@ std::vector<StrangerQueue::Id> StrangerQueue::expel(Time now) {
   return late;
 }
 
-void StrangerQueue::know(Id id, Time now) {
+void StrangerQueue::know(Id id, const std::string& token_id, Time now) {
   const auto found = strangers_.find(id);
   if (found == strangers_.end()) return;
   const auto of = found->second.of;
   Neighbourhood& one = of->second;
-  trusted_.trust(of->first, now);
-  if (!one.trusted) {
-    turns_.erase(one.turn);
-    one.trusted = true;
-    trusted_inside_ += one.inside;
-    if (!one.waiting.empty()) trusted_turns_.emplace(one.turn, of);
+  if (rank_of(one) != Rank::own) {
+    trusted_.trust(of->first, token_id, now);
+    if (one.party->first != std::pair(Rank::trusted, token_id)) {
+      if (!one.waiting.empty()) leave_line(of);
+      if (rank_of(one) == Rank::other) trusted_inside_ += one.inside;
+      part(of);
+      join(of, Rank::trusted, token_id);
+      if (!one.waiting.empty()) stand_in_line(of, one.turn);
+    }
   }
   // Not for ever: whoever has a token and two addresses could keep all others out.
   const bool early = now < one.turn_began + limits_.patience_when_full;
-  if (early && !one.waiting.empty()) set_turn(of, --first_turn_);
+  if (early && !one.waiting.empty()) stand_in_line(of, --first_turn_);
   leave(id);
 }
 
@@ -85,7 +89,7 @@ void StrangerQueue::leave(Id id) {
   gone_.erase(id);
   if (inside_.erase(id) > 0) {
     --stranger.of->second.inside;
-    if (stranger.of->second.trusted) --trusted_inside_;
+    if (rank_of(stranger.of->second) != Rank::other) --trusted_inside_;
   } else {
     stop_waiting(stranger);
   }
@@ -119,45 +123,76 @@ std::optional<StrangerQueue::Time> StrangerQueue::next_expiry() const {
   return first;
 }
 
-void StrangerQueue::set_turn(Neighbourhoods::iterator one, int64_t turn) {
-  Turns& turns = turns_of(one->second);
-  turns.erase(one->second.turn);
-  one->second.turn = turn;
-  turns.emplace(turn, one);
-}
-
-/// Few are full: those before the one that is looked for have all the places inside.
-StrangerQueue::Turns::const_iterator StrangerQueue::first_not_full(const Turns& turns) const {
-  return std::find_if(turns.begin(), turns.end(),
-                      [&](const auto& turn) { return !is_full(turn.second->second); });
-}
-
-StrangerQueue::Neighbourhoods::iterator StrangerQueue::next_in_turn() {
-  const auto own = first_not_full(own_turns_);
-  if (own != own_turns_.cend()) return own->second;
-  const auto trusted = first_not_full(trusted_turns_);
-  const auto other = others_have_all() ? turns_.cend() : first_not_full(turns_);
-  if (trusted == trusted_turns_.cend()) {
-    return other == turns_.cend() ? neighbourhoods_.end() : other->second;
+/// Few neighbourhoods are full: those before the one that is looked for have all the places inside.
+std::optional<StrangerQueue::Next> StrangerQueue::next_of(Rank rank) const {
+  const auto turns = turns_.find(rank);
+  if (turns == turns_.end()) return std::nullopt;
+  for (const auto& [place, party] : turns->second) {
+    for (const auto& [turn, one] : party->second.turns) {
+      if (!is_full(one->second)) return Next{one, place};
+    }
   }
+  return std::nullopt;
+}
+
+std::optional<StrangerQueue::Next> StrangerQueue::next() const {
+  if (const auto own = next_of(Rank::own)) {
+    return inside_.size() < limits_.inside + limits_.own ? own : std::nullopt;
+  }
+  if (inside_.size() >= limits_.inside) return std::nullopt;
+  const auto trusted = next_of(Rank::trusted);
+  const auto other = others_have_all() ? std::nullopt : next_of(Rank::other);
+  if (!trusted || !other) return trusted ? trusted : other;
   const bool kept = trusted_inside_ < limits_.kept;
-  return kept || other == turns_.cend() || trusted->first < other->first ? trusted->second
-                                                                         : other->second;
+  return kept || trusted->turn < other->turn ? trusted : other;
 }
 
 /// Whether somebody could come in if one of this neighbourhood went.
 bool StrangerQueue::is_waited_for(const Neighbourhood& one) const {
   if (is_full(one) && !one.waiting.empty()) return true;
   const bool full = inside_.size() >= limits_.inside;
-  if (full && first_not_full(trusted_turns_) != trusted_turns_.cend()) return true;
-  if (full && first_not_full(own_turns_) != own_turns_.cend()) return true;
-  const bool others = others_have_all() ? !one.trusted : full;
-  return others && first_not_full(turns_) != turns_.cend();
+  if (full && (next_of(Rank::trusted) || next_of(Rank::own))) return true;
+  const bool others = others_have_all() ? rank_of(one) == Rank::other : full;
+  return others && next_of(Rank::other);
 }
 
 StrangerQueue::Time StrangerQueue::expiry(Id id, Time since) const {
   const bool pressed = gone_.contains(id) || is_waited_for(strangers_.at(id).of->second);
   return since + (pressed ? limits_.patience_when_full : limits_.patience);
+}
+
+void StrangerQueue::join(Neighbourhoods::iterator one, Rank rank, const std::string& party) {
+  one->second.party = parties_.try_emplace({rank, party}).first;
+  ++one->second.party->second.neighbourhoods;
+}
+
+void StrangerQueue::part(Neighbourhoods::iterator one) {
+  const auto party = one->second.party;
+  if (--party->second.neighbourhoods == 0) parties_.erase(party);
+}
+
+void StrangerQueue::stand_in_line(Neighbourhoods::iterator one, int64_t turn) {
+  Party& party = one->second.party->second;
+  if (party.turns.empty()) party.turn = ++last_turn_;
+  party.turns.erase(one->second.turn);
+  party.turns.emplace(turn, one);
+  one->second.turn = turn;
+  place(one->second.party);
+}
+
+void StrangerQueue::leave_line(Neighbourhoods::iterator one) {
+  one->second.party->second.turns.erase(one->second.turn);
+  place(one->second.party);
+}
+
+void StrangerQueue::place(Parties::iterator party) {
+  Party& one = party->second;
+  Turns& turns = turns_[party->first.first];
+  turns.erase(one.place);
+  if (one.turns.empty()) return;
+  const int64_t first = one.turns.begin()->first;
+  one.place = first < 0 ? first : one.turn;
+  turns.emplace(one.place, party);
 }
 
 void StrangerQueue::stop_waiting(const Stranger& stranger) {
@@ -166,14 +201,16 @@ void StrangerQueue::stop_waiting(const Stranger& stranger) {
   by_number_.erase({one.waiting.size(), name});
   one.waiting.erase(stranger.place);
   if (one.waiting.empty()) {
-    turns_of(one).erase(one.turn);
+    leave_line(stranger.of);
   } else {
     by_number_.emplace(one.waiting.size(), name);
   }
 }
 
 void StrangerQueue::forget_if_empty(Neighbourhoods::iterator one) {
-  if (one->second.inside == 0 && one->second.waiting.empty()) neighbourhoods_.erase(one);
+  if (one->second.inside > 0 || !one->second.waiting.empty()) return;
+  part(one);
+  neighbourhoods_.erase(one);
 }
 
 }  // namespace hyades::coordinator

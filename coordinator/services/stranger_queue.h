@@ -18,9 +18,10 @@
 namespace hyades::coordinator {
 
 /// Who of those that nobody knows yet may come in, who waits, and who has to go: bounds in all and
-/// for each neighbourhood (neighbourhood_of()). Some places are kept for neighbourhoods of which
-/// somebody has become known lately, so that no crowd of others keeps a farm's own machines out.
-/// Knows no sockets and no clock. Not thread-safe.
+/// for each neighbourhood (neighbourhood_of()). Some places are kept for neighbourhoods that are
+/// trusted, of which somebody has shown a token lately, so that no crowd of others keeps a farm's
+/// own machines out. Neighbourhoods take turns; those of one token have one turn together, so that
+/// it makes no crowd that comes before others. Knows no sockets and no clock. Not thread-safe.
 class StrangerQueue {
  public:
   using Id = uint64_t;
@@ -37,7 +38,7 @@ class StrangerQueue {
     std::chrono::milliseconds patience_when_full{
         2000};                     ///< the same where others wait for the place
     std::chrono::hours trust{24};  ///< how long a neighbourhood is trusted at least
-    size_t trusted = 4096;         ///< how many are at least
+    size_t trusted = 4096;         ///< how many of one token are at least
   };
 
   explicit StrangerQueue(const Limits& limits);
@@ -45,18 +46,18 @@ class StrangerQueue {
   /// One comes, and waits; `own`: it is our own user, who comes before all others, and for whom
   /// there are places beside theirs.
   void come(Id id, const std::string& neighbourhood, bool own = false);
-  /// Lets the next one in, if one may be. Neighbourhoods take turns; of each the last that came is
-  /// the first: who has waited for long has given up, or soon will.
+  /// Lets the next one in, if one may be. Of each neighbourhood the last that came is the first:
+  /// who has waited for long has given up, or soon will.
   std::optional<Id> let_in(Time now);
   /// Where more wait than may: one of them, who has to go. Of the neighbourhood of which most wait
   /// the one that has waited longest, so that a crowd turns away nobody but itself.
   std::optional<Id> turn_away();
   /// Those that have been inside for too long, who have to go.
   std::vector<Id> expel(Time now);
-  /// One has become known: its neighbourhood is trusted from now on, and the next of it comes in
-  /// in its place, for as long as `patience_when_full` since one came in in turn. Nothing where
-  /// this one was not there.
-  void know(Id id, Time now);
+  /// One has become known by the token of this id: its neighbourhood is trusted from now on, and
+  /// the next of it comes in in its place, for as long as `patience_when_full` since one came in in
+  /// turn. Nothing where this one was not there.
+  void know(Id id, const std::string& token_id, Time now);
   /// One has gone, and its place is free at once; nothing where this one was not there.
   void leave(Id id);
   /// One has gone. Who was inside leaves its place empty for as long as it might have been there
@@ -70,53 +71,67 @@ class StrangerQueue {
   size_t waiting() const { return strangers_.size() - inside_.size(); }
 
  private:
+  enum class Rank { own, trusted, other };
+  struct Party;
+  using Parties = std::map<std::pair<Rank, std::string>, Party>;
   struct Neighbourhood {
     size_t inside = 0;
     std::list<Id> waiting{};  ///< in the order in which they came
-    bool trusted = false;
-    bool own = false;
-    int64_t turn = 0;  ///< key in turns_of(), while somebody waits; negative: out of turn
+    Parties::iterator party;
+    int64_t turn = 0;  ///< key in Party::turns, while somebody waits; negative: out of turn
     Time turn_began;   ///< when one came in in turn
   };
   using Neighbourhoods = std::map<std::string, Neighbourhood>;
+  /// Those who have one turn together: our own user, the neighbourhoods of a token, or one of which
+  /// nobody is known.
+  struct Party {
+    size_t neighbourhoods = 0;
+    std::map<int64_t, Neighbourhoods::iterator> turns{};  ///< where somebody waits, the next first
+    int64_t turn = 0;
+    int64_t place = 0;  ///< key in turns_, while somebody waits: `turn`, or the first of `turns`
+                        ///< where that is out of turn
+  };
   struct Stranger {
     Neighbourhoods::iterator of;
     std::list<Id>::iterator place;  ///< in Neighbourhood::waiting, while it waits
   };
+  /// Those of whom somebody waits, the next first.
+  using Turns = std::map<int64_t, Parties::iterator>;
 
-  /// Those of whom somebody waits, by whose turn it is.
-  using Turns = std::map<int64_t, Neighbourhoods::iterator>;
-  Turns& turns_of(const Neighbourhood& one) {
-    return one.own ? own_turns_ : one.trusted ? trusted_turns_ : turns_;
-  }
-  size_t most_inside() const {
-    return limits_.inside + (first_not_full(own_turns_) == own_turns_.cend() ? 0 : limits_.own);
-  }
-  void set_turn(Neighbourhoods::iterator one, int64_t turn);
-
+  static Rank rank_of(const Neighbourhood& one) { return one.party->first.first; }
   bool is_full(const Neighbourhood& one) const { return one.inside >= limits_.inside_of_one; }
-  Turns::const_iterator first_not_full(const Turns& turns) const;
   /// Whether those that are not trusted have all places that they may have.
   bool others_have_all() const {
     return inside_.size() - trusted_inside_ >= limits_.inside - limits_.kept;
   }
-  /// Whose turn it is, of those of whom one more may be inside.
-  Neighbourhoods::iterator next_in_turn();
   bool is_waited_for(const Neighbourhood& one) const;
   Time expiry(Id id, Time since) const;
+
+  /// Whose turn it is, of those of whom one more may be inside; and that of its party.
+  struct Next {
+    Neighbourhoods::iterator neighbourhood;
+    int64_t turn;
+  };
+  std::optional<Next> next_of(Rank rank) const;
+  std::optional<Next> next() const;
+
+  void join(Neighbourhoods::iterator one, Rank rank, const std::string& party);
+  void part(Neighbourhoods::iterator one);
+  void stand_in_line(Neighbourhoods::iterator one, int64_t turn);
+  void leave_line(Neighbourhoods::iterator one);
+  void place(Parties::iterator party);
   void stop_waiting(const Stranger& stranger);
   void forget_if_empty(Neighbourhoods::iterator one);
 
   Limits limits_;
+  Parties parties_;
   Neighbourhoods neighbourhoods_;
   std::unordered_map<Id, Stranger> strangers_;
   std::unordered_map<Id, Time> inside_;  ///< since when
   std::unordered_set<Id> gone_;          ///< of those inside
   int64_t last_turn_ = 0;
   int64_t first_turn_ = 0;
-  Turns turns_;          ///< of those that are not trusted
-  Turns trusted_turns_;  ///< of those that are
-  Turns own_turns_;      ///< of our own user
+  std::map<Rank, Turns> turns_;
   size_t trusted_inside_ = 0;
   TrustedNeighbours trusted_;
   std::set<std::pair<size_t, const std::string*>> by_number_;  ///< the same, by how many wait

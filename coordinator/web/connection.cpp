@@ -96,7 +96,7 @@ class ConnectionOver final : public Connection,
     ErrorCode unknown;
     const auto from = tcp(stream_).socket().remote_endpoint(unknown);
     if (!unknown) address_ = address_text(from.address().to_string(), std::to_string(from.port()));
-    world_.count.enter(owner_);
+    place_ = world_.count.enter(owner_);
     if constexpr (std::is_same_v<Stream, Tls>) {
       tcp(stream_).expires_after(kBegin);
       stream_.async_handshake(asio::ssl::stream_base::server, [me = self()](ErrorCode error) {
@@ -182,7 +182,7 @@ class ConnectionOver final : public Connection,
     if (admitted.refusal) return send_away(*admitted.refusal);
     caller_ = request_.caller;
     const bool stranger = caller_.role == v1::ROLE_UNSPECIFIED;
-    if (!stranger) world_.count.know(owner_, std::chrono::steady_clock::now());
+    if (!stranger) world_.count.know(owner_, caller_.token_id, std::chrono::steady_clock::now());
     if (world_.one_request || (stranger && ahead_ >= kMostAhead)) keep_alive_ = false;
     take_body(admitted.most_bytes);
   }
@@ -502,11 +502,12 @@ class ConnectionOver final : public Connection,
     tcp(stream_).socket().close(ignored);
     if (world_.open.erase(self()) == 0) return;
     world_.meters.http_connections().Decrement();
-    world_.count.leave(owner_);
+    world_.count.leave(place_);
   }
 
   ConnectionWorld& world_;
-  const Neighbour owner_;                          ///< whom it is counted for
+  const Neighbour owner_;
+  ConnectionCount::Place place_;                   ///< whom it is counted for
   const std::shared_ptr<asio::ssl::context> tls_;  ///< outlives the stream
   Stream stream_;
   beast::flat_buffer buffer_{kMostUnparsed};

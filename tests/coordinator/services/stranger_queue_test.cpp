@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <deque>
 #include <map>
 #include <set>
@@ -138,7 +139,7 @@ TEST(StrangerQueue, BoundsHoldWhateverHappens) {
     for (const auto in : inside) ASSERT_LE(++of[all[in]], 2);
     if (!inside.empty() && choose(4) == 0) {
       const auto one = *std::next(inside.begin(), static_cast<long>(choose(inside.size())));
-      queue.know(one, now);
+      queue.know(one, "a token", now);
       forget(one);
     }
   }
@@ -162,7 +163,7 @@ TEST(StrangerQueue, OneThatIsKnownLetsTheNextOfItsNeighbourhoodIn) {
     queue.expel(now);
     while (const auto id = queue.let_in(now)) {
       if (*id < first) continue;
-      queue.know(*id, now);
+      queue.know(*id, "a token", now);
       ++known;
     }
   }
@@ -176,7 +177,7 @@ TEST(StrangerQueue, ThoseWhoAreKnownDoNotHandOnAllPlaces) {
   StrangerQueue::Id next = 1;
   const auto fill = [&](StrangerQueue::Id id) { queue.come(id, id % 2 == 0 ? "a" : "b"); };
   for (; next <= 80; ++next) fill(next);
-  for (const auto id : let_in_all(queue)) queue.know(id, kBegin);
+  for (const auto id : let_in_all(queue)) queue.know(id, "a token", kBegin);
   std::deque<StrangerQueue::Id> inside;
   for (const auto id : let_in_all(queue)) inside.push_back(id);
   ASSERT_EQ(inside.size(), 24U);
@@ -185,7 +186,7 @@ TEST(StrangerQueue, ThoseWhoAreKnownDoNotHandOnAllPlaces) {
   StrangerQueue::Time now = kBegin;
   for (; now < kBegin + 60s && in != 100'000; now += 60ms) {
     fill(next++);
-    queue.know(inside.front(), now);
+    queue.know(inside.front(), "a token", now);
     inside.pop_front();
     const auto let = queue.let_in(now);
     ASSERT_TRUE(let);
@@ -199,7 +200,7 @@ TEST(StrangerQueue, PlacesAreKeptForThoseWhoHaveBeenKnown) {
   StrangerQueue queue({});
   queue.come(1, "farm");
   ASSERT_EQ(let_in_all(queue), Ids{1});
-  queue.know(1, kBegin);
+  queue.know(1, "a token", kBegin);
   StrangerQueue::Id next = 2;
   for (int address = 0; address < 3000; ++address) queue.come(next++, std::to_string(address));
   EXPECT_EQ(let_in_all(queue).size(), 16U) << "eight are kept";
@@ -211,6 +212,32 @@ TEST(StrangerQueue, PlacesAreKeptForThoseWhoHaveBeenKnown) {
   EXPECT_EQ(queue.inside(), 24U);
   EXPECT_EQ(queue.expel(kBegin + 2s).size(), 24U) << "all are in somebody's way";
   EXPECT_EQ(let_in_all(queue, kBegin + 2s).size(), 24U);
+}
+
+/// However many of them it has made trusted, and however full they keep the queue.
+TEST(StrangerQueue, NeighbourhoodsOfOneTokenHaveOneTurn) {
+  StrangerQueue queue({});
+  StrangerQueue::Id next = 1;
+  for (int i = 0; i < 600; ++i) {
+    queue.come(next, "of eve " + std::to_string(i));
+    ASSERT_EQ(let_in_all(queue), Ids{next});
+    queue.know(next++, "eve's", kBegin);
+  }
+  queue.come(next, "of ada");
+  ASSERT_EQ(let_in_all(queue), Ids{next});
+  queue.know(next++, "ada's", kBegin);
+  for (int i = 0; i < 1800; ++i) queue.come(next++, "of eve " + std::to_string(i % 600));
+  EXPECT_EQ(let_in_all(queue).size(), 24U);
+  const StrangerQueue::Id ada = 100'000;
+  const StrangerQueue::Id newcomer = 100'001;
+  queue.come(ada, "of ada");
+  queue.come(newcomer, "of nobody");
+  EXPECT_EQ(queue.expel(kBegin + 2s).size(), 24U);
+  const Ids in = let_in_all(queue, kBegin + 2s);
+  ASSERT_EQ(in.size(), 24U);
+  EXPECT_EQ(std::set(in.begin(), in.begin() + 3).size(), 3U);
+  EXPECT_EQ(std::count(in.begin(), in.begin() + 3, ada), 1);
+  EXPECT_EQ(std::count(in.begin(), in.begin() + 10, newcomer), 1) << "eight are kept";
 }
 
 /// However many neighbourhoods somebody with a token has made trusted.
@@ -240,13 +267,32 @@ TEST(StrangerQueue, TrustIsForgottenInTime) {
   for (const char* name : {"a", "b", "c", "d", "e"}) {
     queue.come(next, name);
     ASSERT_EQ(let_in_all(queue), Ids{next});
-    queue.know(next++, kBegin);
+    queue.know(next++, "a token", kBegin);
   }
   for (int address = 0; address < 100; ++address) queue.come(next++, std::to_string(address));
   ASSERT_EQ(let_in_all(queue).size(), 16U);
   queue.come(next, "a");
   EXPECT_TRUE(let_in_all(queue).empty()) << "four have been known since";
   queue.come(++next, "e");
+  EXPECT_EQ(let_in_all(queue), Ids{next});
+}
+
+/// Whoever shows one token from everywhere makes nobody else's be forgotten.
+TEST(StrangerQueue, OneTokenPushesOutNoOther) {
+  StrangerQueue::Limits limits;
+  limits.trusted = 2;
+  StrangerQueue queue(limits);
+  StrangerQueue::Id next = 1;
+  for (const char* name : {"of ada", "1", "2", "3", "4", "5", "6", "7"}) {
+    queue.come(next, name);
+    ASSERT_EQ(let_in_all(queue), Ids{next});
+    queue.know(next, next == 1 ? "ada's" : "eve's", kBegin);
+    ++next;
+  }
+  for (int address = 0; address < 100; ++address)
+    queue.come(next++, "crowd " + std::to_string(address));
+  ASSERT_EQ(let_in_all(queue).size(), 16U);
+  queue.come(next, "of ada");
   EXPECT_EQ(let_in_all(queue), Ids{next});
 }
 

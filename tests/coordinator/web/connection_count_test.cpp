@@ -3,6 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <string>
+#include <vector>
+
 namespace hyades::coordinator {
 namespace {
 
@@ -14,10 +17,10 @@ TEST(ConnectionCount, NobodyTakesAll) {
   ConnectionCount count(60, 2, 1);
   count.enter(kOne);
   EXPECT_TRUE(count.may_come(kOne));
-  count.enter(kOne);
+  const ConnectionCount::Place place = count.enter(kOne);
   EXPECT_FALSE(count.may_come(kOne));
   EXPECT_TRUE(count.may_come(kOther));
-  count.leave(kOne);
+  count.leave(place);
   EXPECT_TRUE(count.may_come(kOne));
 }
 
@@ -52,13 +55,33 @@ TEST(ConnectionCount, AGroupTakesHalf) {
   EXPECT_TRUE(count.may_come(kOne));
 }
 
+/// One token makes any number of addresses known, by which half of what is kept can be had.
+TEST(ConnectionCount, OneTokenTakesNotAllThatIsKept) {
+  ConnectionCount count(4000, 1000, 8);
+  count.know(kOne, "ada's", {});
+  std::vector<ConnectionCount::Place> places;
+  for (int i = 0; i < 1000; ++i) {
+    const Neighbour one{"address " + std::to_string(i)};
+    count.know(one, "eve's", {});
+    for (int k = 0; k < 8 && count.may_come(one); ++k) places.push_back(count.enter(one));
+  }
+  EXPECT_EQ(places.size(), 3500U);
+  EXPECT_TRUE(count.may_come(kOne));
+  EXPECT_FALSE(count.may_come({"address 1"}));
+  for (int i = 0; i < 3300; ++i) {
+    count.leave(places.back());
+    places.pop_back();
+  }
+  EXPECT_TRUE(count.may_come({"address 999"}));
+}
+
 /// By one token all of a group are known.
 TEST(ConnectionCount, AGroupThatIsKnownLeavesPlaces) {
   ConnectionCount count(4000, 1000, 8);
-  count.know(kOne, {});
+  count.know(kOne, "ada's", {});
   for (int i = 0; i < 600; ++i) {
     const Neighbour one{"user " + std::to_string(i), "users of this machine"};
-    count.know(one, {});
+    count.know(one, "eve's", {});
     for (int k = 0; k < 1000 && count.may_come(one); ++k) count.enter(one);
   }
   EXPECT_TRUE(count.may_come(kOne));
@@ -67,7 +90,7 @@ TEST(ConnectionCount, AGroupThatIsKnownLeavesPlaces) {
 
 TEST(ConnectionCount, WhoIsKnownHasPlacesThatStrangersDoNotReach) {
   ConnectionCount count(4000, 1000, 8);
-  count.know(kOne, {});
+  count.know(kOne, "ada's", {});
   for (int i = 0; i < 1000; ++i) {
     const Neighbour stranger{"stranger " + std::to_string(i)};
     for (int k = 0; k < 8 && count.may_come(stranger); ++k) count.enter(stranger);
