@@ -1,6 +1,8 @@
 #include "cli/command_line.h"
 
+#include <algorithm>
 #include <cstdio>
+#include <iterator>
 #include <memory>
 #include <regex>
 #include <sstream>
@@ -55,7 +57,13 @@ std::string in_our_words(const CLI::App& app, const CLI::ParseError& error) {
       }
     }
     const std::string name = extra.substr(0, extra.find('='));
-    return "there is no option '" + name + "'" + core::did_you_mean(name, options);
+    // What begins one is nearer to it than what is spelled alike: --prio is --priority.
+    std::vector<std::string> longer;
+    std::copy_if(options.begin(), options.end(), std::back_inserter(longer),
+                 [&](const std::string& one) { return name.size() > 3 && one.starts_with(name); });
+    const std::string hint = longer.size() == 1 ? ", did you mean '" + longer.front() + "'?"
+                                                : core::did_you_mean(name, options);
+    return "there is no option '" + name + "'" + hint;
   }
   std::smatch parts;
   static const std::regex conversion("Could not convert: (\\S+) = (.*)");

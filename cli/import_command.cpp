@@ -52,9 +52,9 @@ int import_command(int argc, char** argv) {
       "exit status: 0 written, 2 not");
   if (const auto status = parse_command_line(app, argc, argv, kBadInput)) return *status;
   if (!core::is_scene_file(request.scene)) {
-    std::fprintf(stderr,
-                 "%s: expected a scene, mesh or script (.glb, .gltf, .pbrt, .obj, .ply, .lua)\n",
-                 core::printable(request.scene).c_str());
+    std::fprintf(
+        stderr, "%s: expected a scene, mesh or script (.glb, .gltf, .pbrt, .obj, .ply, .lua)%s\n",
+        core::printable(request.scene).c_str(), core::hint_for_scene_file(request.scene).c_str());
     return kBadInput;
   }
   if (request.job.empty()) {

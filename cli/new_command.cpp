@@ -12,6 +12,7 @@
 #include "cli/written_file.h"
 #include "core/base/atomic_file.h"
 #include "core/base/printable.h"
+#include "core/base/text.h"
 #include "core/job/output_path.h"
 
 namespace hyades::cli {
@@ -80,12 +81,16 @@ std::string job_called(const std::string& name, bool animated) {
   return replaced(text, "NAME", name);
 }
 
-/// What outputs may be called so: letters, digits, '-', '_' and '.' of a file's name.
-bool is_plain(const std::string& name) {
-  return !name.empty() && name.front() != '.' && name.front() != '-' &&
-         name.find_first_not_of(
-             "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789-_.") ==
-             std::string::npos;
+/// What outputs may be called so, nearly as the file is: letters, digits, '-', '_' and '.'.
+std::string plain_name(const std::string& stem) {
+  std::string name;
+  for (const char c : stem) {
+    const bool is_plain = core::is_letter_or_digit(c) || c == '_' || (!name.empty() && c == '.');
+    if (is_plain) name += c;
+    if (!is_plain && !name.empty() && !name.ends_with('-')) name += '-';
+  }
+  while (name.ends_with('-')) name.pop_back();
+  return name.empty() ? "picture" : name;
 }
 
 }  // namespace
@@ -104,12 +109,7 @@ int new_command(int argc, char** argv) {
       "  hyades new turn.yaml --animated\n"
       "exit status: 0 written, 1 it could not be, 2 the arguments are wrong, or the file is there");
   if (const auto status = parse_command_line(app, argc, argv)) return *status;
-  const std::string name = std::filesystem::path(file).stem().string();
-  if (!is_plain(name)) {
-    std::fprintf(stderr, "hyades new: '%s': expected letters, digits, '-', '_' and '.' as a name\n",
-                 name.c_str());
-    return kExitRefused;
-  }
+  const std::string name = plain_name(std::filesystem::path(file).stem().string());
   const std::string extension = core::file_extension(file);
   if (extension != ".yaml" && extension != ".yml") {
     std::fprintf(stderr, "hyades new: %s: expected NAME.yaml\n", core::printable(file).c_str());

@@ -85,7 +85,6 @@ void declare_what(CLI::App& app, RenderOptions& options, Words& words) {
                  "the job (.yaml), or a scene, mesh or script (.glb, .gltf, .pbrt, .obj, .ply, "
                  ".lua, and .blend where Blender is installed)")
       ->required();
-  declare_scene_options(app, options.scene);
   app.add_option("--frames", options.frames,
                  "frames to render: 7, 1-10 or 1-10x2 (default: all; at most a million)")
       ->check(no_frames_error)
@@ -174,6 +173,7 @@ std::optional<int> parse_render_options(int argc, char** argv, RenderOptions& op
   declare_what(app, options, words);
   declare_resources(app, options);
   declare_results(app, options);
+  declare_scene_options(app, options.scene);
   app.footer(
       "examples:\n"
       "  hyades render jobs/quickstart/job.yaml\n"

@@ -44,6 +44,8 @@ core::ScriptSettings script_settings(const std::vector<std::string>& set) {
 }
 
 void declare_scene_options(CLI::App& app, SceneOptions& options) {
+  const std::string others = app.option_defaults()->get_group();
+  app.option_defaults()->group("Scenes, meshes and scripts");
   app.add_option("--media", options.media,
                  "of a scene or mesh: fill the materials that have the names of this file's media");
   app.add_option("--animation", options.animation,
@@ -55,6 +57,7 @@ void declare_scene_options(CLI::App& app, SceneOptions& options) {
   app.add_flag("--follow-links", options.follow_links,
                "follow links that lead out of a scene's folder: only of scenes that you trust");
   declare_set_option(app, options.set);
+  app.option_defaults()->group(others);
 }
 
 core::JobFileOptions job_file_options(const SceneOptions& options) {

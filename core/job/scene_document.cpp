@@ -110,6 +110,14 @@ bool is_scene_file(std::string_view name) {
   return std::find(kExtensions.begin(), kExtensions.end(), extension) != kExtensions.end();
 }
 
+std::string hint_for_scene_file(std::string_view name) {
+  constexpr std::array<std::string_view, 8> kBlenders = {".fbx", ".dae",  ".abc",  ".stl",
+                                                         ".usd", ".usda", ".usdc", ".usdz"};
+  const std::string extension = file_extension(std::string(name));
+  const bool known = std::find(kBlenders.begin(), kBlenders.end(), extension) != kBlenders.end();
+  return known ? ": Blender opens it, and writes .glb" : "";
+}
+
 bool is_script_file(std::string_view name) { return file_extension(std::string(name)) == kScript; }
 
 bool is_setting_name(std::string_view name) {

@@ -32,6 +32,10 @@ inline constexpr std::string_view kMadeFolder = ".files";
 /// .obj, .ply or .lua.
 bool is_scene_file(std::string_view name);
 
+/// What can be done with a scene file of other tools that importers do not read, such as a .fbx:
+/// ": Blender opens it, and writes .glb"; empty of any other name.
+std::string hint_for_scene_file(std::string_view name);
+
 /// Whether a file's name is that of a script which makes a job: .lua.
 bool is_script_file(std::string_view name);
 
