@@ -2,6 +2,7 @@
 
 #include <arpa/inet.h>
 #include <fcntl.h>
+#include <linux/tcp.h>
 #include <netinet/in.h>
 #include <sys/epoll.h>
 #include <sys/eventfd.h>
@@ -33,6 +34,8 @@ constexpr size_t kEventsAtOnce = 256;
 constexpr int kAcceptsAtOnce = 64;
 constexpr std::chrono::milliseconds kAcceptAgainAfter{200};
 constexpr int kLongestWaitMs = 60'000;
+/// How long what was sent may stay without an answer of the other machine.
+constexpr unsigned kAnswersWithinMs = 10'000;
 
 /// Of the files that this process may have open, those who wait get an eighth; and of what is known
 /// each needs two, where two thirds are left to all of it.
@@ -87,9 +90,14 @@ core::Status ConnectionGate::open(Listening listening, Inside inside) {
   wake_ = core::Descriptor(::eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK));
   bool watched =
       poll_.valid() && wake_.valid() && watch(poll_, EPOLL_CTL_ADD, wake_, EPOLLIN, kWoken);
+  beginnings_are_kept_ = true;
   for (size_t i = 0; i < listening_.sockets.size(); ++i) {
-    watched =
-        watched && watch(poll_, EPOLL_CTL_ADD, listening_.sockets[i], EPOLLIN, kFirstListener + i);
+    const core::Descriptor& socket = listening_.sockets[i];
+    // Those who connect get their options from here.
+    (void)::setsockopt(socket.get(), IPPROTO_TCP, TCP_USER_TIMEOUT, &kAnswersWithinMs,
+                       sizeof kAnswersWithinMs);
+    beginnings_are_kept_ = keep_beginnings(socket) && beginnings_are_kept_;
+    watched = watched && watch(poll_, EPOLL_CTL_ADD, socket, EPOLLIN, kFirstListener + i);
   }
   if (!watched) {
     return core::Error{"cannot watch connections (" +
@@ -312,7 +320,7 @@ bool ConnectionGate::may_be_mistaken(const std::string& address) const {
 void ConnectionGate::take(core::Descriptor socket, std::string address) {
   if (may_be_mistaken(address)) return;  // a client comes again, from another port
   Connection connection{.socket = std::move(socket), .address = std::move(address)};
-  if (listening_.beginnings_are_kept) {
+  if (beginnings_are_kept_) {
     // Else nobody could bound what this one sends; a client comes again.
     const std::optional<uint32_t> beginning = take_beginning(connection.socket);
     if (!beginning) return;

@@ -10,7 +10,7 @@
 #include <unordered_map>
 #include <vector>
 
-#include "coordinator/services/listening.h"
+#include "coordinator/access/listening.h"
 #include "coordinator/services/stranger_queue.h"
 #include "core/base/descriptor.h"
 #include "core/base/mutex.h"
@@ -131,6 +131,7 @@ class ConnectionGate {
 
   const Limits limits_;
   Listening listening_;
+  bool beginnings_are_kept_ = false;  ///< keep_beginnings(), at all sockets
   Inside inside_;
   core::Descriptor poll_;
   core::Descriptor wake_;

@@ -10,10 +10,10 @@
 #include <grpcpp/server.h>
 #include <grpcpp/server_builder.h>
 
+#include "coordinator/access/listening.h"
 #include "coordinator/controller/controller.h"
 #include "coordinator/services/admission.h"
 #include "coordinator/services/call_meter.h"
-#include "coordinator/services/listening.h"
 #include "coordinator/services/service.h"
 #include "farm/wire.h"
 

@@ -82,9 +82,10 @@ class ConnectionOver final : public Connection,
                              public std::enable_shared_from_this<ConnectionOver<Stream>> {
  public:
   template <class... Arguments>
-  ConnectionOver(ConnectionWorld& world, Neighbour owner, std::shared_ptr<asio::ssl::context> tls,
-                 Arguments&&... stream)
+  ConnectionOver(ConnectionWorld& world, std::string address, Neighbour owner,
+                 std::shared_ptr<asio::ssl::context> tls, Arguments&&... stream)
       : world_(world),
+        address_(std::move(address)),
         owner_(std::move(owner)),
         tls_(std::move(tls)),
         stream_(std::forward<Arguments>(stream)...),
@@ -93,9 +94,6 @@ class ConnectionOver final : public Connection,
   void begin() override {
     world_.open.insert(self());
     world_.meters.http_connections().Increment();
-    ErrorCode unknown;
-    const auto from = tcp(stream_).socket().remote_endpoint(unknown);
-    if (!unknown) address_ = address_text(from.address().to_string(), std::to_string(from.port()));
     place_ = world_.count.enter(owner_);
     if constexpr (std::is_same_v<Stream, Tls>) {
       tcp(stream_).expires_after(kBegin);
@@ -506,6 +504,7 @@ class ConnectionOver final : public Connection,
   }
 
   ConnectionWorld& world_;
+  const std::string address_;  ///< of the other side, as address_text() has it
   const Neighbour owner_;
   ConnectionCount::Place place_;                   ///< whom it is counted for
   const std::shared_ptr<asio::ssl::context> tls_;  ///< outlives the stream
@@ -513,8 +512,7 @@ class ConnectionOver final : public Connection,
   beast::flat_buffer buffer_{kMostUnparsed};
   std::optional<http::request_parser<http::string_body>> parser_;
   WebRequest request_;
-  std::string address_;  ///< of the other side, as address_text() has it
-  Caller caller_;        ///< of the request in work
+  Caller caller_;  ///< of the request in work
   std::unique_ptr<Visit> visit_;
   std::unique_ptr<OwnerConnections::Entry> entry_;       ///< while its answer takes its time
   std::optional<farm::ByteBudget::Share> body_share_;    ///< of its body
@@ -541,14 +539,16 @@ class ConnectionOver final : public Connection,
 
 }  // namespace
 
-std::shared_ptr<Connection> make_connection(asio::ip::tcp::socket socket, Neighbour owner,
+std::shared_ptr<Connection> make_connection(asio::ip::tcp::socket socket, std::string address,
+                                            Neighbour owner,
                                             const std::shared_ptr<asio::ssl::context>& tls,
                                             ConnectionWorld& world) {
   if (tls) {
-    return std::make_shared<ConnectionOver<Tls>>(world, std::move(owner), tls, std::move(socket),
-                                                 *tls);
+    return std::make_shared<ConnectionOver<Tls>>(world, std::move(address), std::move(owner), tls,
+                                                 std::move(socket), *tls);
   }
-  return std::make_shared<ConnectionOver<Plain>>(world, std::move(owner), tls, std::move(socket));
+  return std::make_shared<ConnectionOver<Plain>>(world, std::move(address), std::move(owner), tls,
+                                                 std::move(socket));
 }
 
 }  // namespace hyades::coordinator

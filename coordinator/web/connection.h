@@ -6,6 +6,7 @@
 #include <memory>
 #include <optional>
 #include <set>
+#include <string>
 
 #include <boost/asio/ip/tcp.hpp>
 
@@ -75,9 +76,10 @@ struct ConnectionWorld {
   std::chrono::milliseconds send_patience{60'000};
 };
 
-/// A connection over an accepted socket. `owner`: whom it is counted for. `tls`: null for plain
-/// text. The world outlives it.
-std::shared_ptr<Connection> make_connection(boost::asio::ip::tcp::socket socket, Neighbour owner,
+/// A connection over an accepted socket, from `address` (address_text()). `owner`: whom it is
+/// counted for. `tls`: null for plain text. The world outlives it.
+std::shared_ptr<Connection> make_connection(boost::asio::ip::tcp::socket socket,
+                                            std::string address, Neighbour owner,
                                             const std::shared_ptr<boost::asio::ssl::context>& tls,
                                             ConnectionWorld& world);
 

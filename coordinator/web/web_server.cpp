@@ -9,17 +9,16 @@
 #include <exception>
 #include <functional>
 #include <optional>
-#include <set>
 #include <thread>
 #include <utility>
 
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/ip/tcp.hpp>
-#include <boost/asio/ip/v6_only.hpp>
 #include <boost/asio/steady_timer.hpp>
 
 #include "coordinator/access/address.h"
 #include "coordinator/access/authority.h"
+#include "coordinator/access/listening.h"
 #include "coordinator/access/peer_user.h"
 #include "coordinator/controller/controller.h"
 #include "coordinator/meters/meters.h"
@@ -58,37 +57,12 @@ constexpr std::chrono::seconds kSweep{30};
 /// How soon certificates that have changed are noticed.
 constexpr std::chrono::seconds kLook{2};
 
-/// Programs that the coordinator starts must not hold its connections open.
-template <class Socket>
-void close_on_exec(Socket& socket) {
-  (void)::fcntl(socket.native_handle(), F_SETFD, FD_CLOEXEC);
-}
-
 }  // namespace
 
 struct WebServer::Parts {
   /// An address at which others may connect.
   struct Door {
     explicit Door(asio::io_context& network) : acceptor(network), again(network) {}
-
-    /// `alone`: there is no other, so that of all addresses (::) those of IPv4 are meant too.
-    boost::system::error_code open(const tcp::endpoint& endpoint, bool alone) {
-      boost::system::error_code error;
-      acceptor.open(endpoint.protocol(), error);
-      if (!error) close_on_exec(acceptor);
-      if (!error && !alone && endpoint.protocol() == tcp::v6()) {
-        acceptor.set_option(asio::ip::v6_only(true), error);
-      }
-      if (!error) acceptor.set_option(tcp::acceptor::reuse_address(true), error);
-      if (!error) acceptor.bind(endpoint, error);
-      if (!error) acceptor.non_blocking(true, error);
-      if (!error) acceptor.listen(asio::socket_base::max_listen_connections, error);
-      return error;
-    }
-    uint16_t own_port() const {
-      boost::system::error_code error;
-      return acceptor.local_endpoint(error).port();
-    }
 
     tcp::acceptor acceptor;
     asio::steady_timer again;
@@ -201,30 +175,19 @@ struct WebServer::Parts {
     if (AuditLog* log = authority.audit()) log->refuse(caller, rule.action, why);
   }
 
-  /// At all addresses that the name stands for: at one that we left another user could take our
-  /// place. Only ::1 may be missing where others are there.
   core::Status listen(const std::string& address) {
-    const auto [host, port] = split_address(address);
-    boost::system::error_code error;
-    tcp::resolver resolver(network);
-    const auto found = resolver.resolve(
-        host, port, tcp::resolver::passive | tcp::resolver::numeric_service, error);
-    std::set<tcp::endpoint> all;
-    for (const auto& one : found) all.insert(one.endpoint());
-    for (tcp::endpoint endpoint : all) {
-      if (!doors.empty() && endpoint.port() == 0) endpoint.port(doors.front().own_port());
+    auto listening = listen_at({address});
+    if (!listening) return listening.error();
+    port = listening->port;
+    for (core::Descriptor& socket : listening->sockets) {
       doors.emplace_back(network);
-      error = doors.back().open(endpoint, all.size() == 1);
-      if (!error) continue;
-      doors.pop_back();
-      const bool may_miss = all.size() > 1 && error != asio::error::address_in_use &&
-                            endpoint.address() == asio::ip::address_v6::loopback();
-      if (!may_miss) break;
-      error.clear();
-    }
-    if (!error && doors.empty()) error = asio::error::host_not_found;
-    if (error) {
-      return core::Error{address + ": cannot listen there (" + error.message() + ")"};
+      // Only what IPv6 can do differs by the protocol that is told here.
+      boost::system::error_code error;
+      doors.back().acceptor.assign(tcp::v6(), socket.get(), error);
+      if (!error) (void)socket.release();  // it is the acceptor's
+      // The socket does not block; that accept() must not wait either is told besides.
+      if (!error) doors.back().acceptor.non_blocking(true, error);
+      if (error) return core::Error{address + ": cannot serve there (" + error.message() + ")"};
     }
     return {};
   }
@@ -249,23 +212,17 @@ struct WebServer::Parts {
       tcp::socket socket = acceptor.accept(error);
       if (error == asio::error::would_block || error == asio::error::try_again) return {};
       if (error) return error;
-      Neighbour owner = owner_of(socket);
-      if (owner.name.empty() || !world.count.may_come(owner)) continue;
-      boost::system::error_code ignored;
-      close_on_exec(socket);
-      socket.set_option(tcp::no_delay(true), ignored);
-      make_connection(std::move(socket), std::move(owner), tls, world)->begin();
+      boost::system::error_code gone;
+      const auto from = socket.remote_endpoint(gone);
+      if (gone) continue;
+      std::string address = address_text(from.address().to_string(), std::to_string(from.port()));
+      Neighbour owner = neighbour_at(address, socket.native_handle());
+      if (!world.count.may_come(owner)) continue;
+      // Programs that the coordinator starts must not hold its connections open.
+      (void)::fcntl(socket.native_handle(), F_SETFD, FD_CLOEXEC);
+      make_connection(std::move(socket), std::move(address), std::move(owner), tls, world)->begin();
     }
     return {};
-  }
-
-  /// Whom a connection that has come is counted for; empty: it has gone.
-  static Neighbour owner_of(tcp::socket& socket) {
-    boost::system::error_code gone;
-    const auto from = socket.remote_endpoint(gone);
-    if (gone) return {};
-    return neighbour_at(address_text(from.address().to_string(), std::to_string(from.port())),
-                        socket.native_handle());
   }
 
   void sweep_now_and_then() {
@@ -337,6 +294,7 @@ struct WebServer::Parts {
   core::Mutex certificates_mutex;
   std::string certificates_trouble HYADES_GUARDED_BY(certificates_mutex);  ///< as it was told
   std::deque<Door> doors;
+  uint16_t port = 0;  ///< of all of them
   asio::steady_timer sweep;
   asio::steady_timer look;
   std::thread thread;
@@ -382,10 +340,10 @@ core::Result<std::unique_ptr<WebServer>> WebServer::start(const farm::Listen& li
   if (core::Status bound = parts->listen(listen.address); !bound) return bound.error();
   std::unique_ptr<WebServer> server(new WebServer(std::move(parts)));
   Parts& running = *server->parts_;
-  const uint16_t port = running.doors.front().own_port();
-  running.authenticator.set_port(port);
+  running.authenticator.set_port(running.port);
   server->url_ = (secure ? "https://" : "http://") +
-                 listen.address.substr(0, listen.address.rfind(':') + 1) + std::to_string(port);
+                 listen.address.substr(0, listen.address.rfind(':') + 1) +
+                 std::to_string(running.port);
   for (Parts::Door& one : running.doors) running.accept(one);
   if (serves == Serves::everything) {
     running.live.begin();

@@ -107,7 +107,7 @@ class LongAnswers {
   void accept() {
     acceptor.async_accept([this](boost::system::error_code error, tcp::socket socket) {
       if (error) return;
-      make_connection(std::move(socket), {}, nullptr, world)->begin();
+      make_connection(std::move(socket), {}, {}, nullptr, world)->begin();
       accept();
     });
   }

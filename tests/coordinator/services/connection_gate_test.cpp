@@ -343,25 +343,6 @@ TEST_F(ConnectionGateTest, WithoutFilesItWaitsForThem) {
   EXPECT_TRUE(soon([&] { return came_in() == 2; }));
 }
 
-TEST_F(ConnectionGateTest, ListensAtAllThatANameStandsFor) {
-  for (const char* address : {"0.0.0.0:0", "[::]:0", "localhost:0", "127.0.0.1:0"}) {
-    const auto listening = listen_at({address});
-    if (!listening && std::string(address) == "[::]:0") continue;  // no IPv6 here
-    ASSERT_TRUE(listening.ok()) << listening.error().message;
-    ASSERT_NE(listening->port, 0) << address;
-    EXPECT_FALSE(listen_at({"127.0.0.1:" + std::to_string(listening->port)}).ok()) << address;
-  }
-  const auto nowhere = listen_at({"192.0.2.7:0"});
-  ASSERT_FALSE(nowhere.ok());
-  EXPECT_NE(nowhere.error().message.find("192.0.2.7:0: cannot listen there"), std::string::npos);
-  const auto both = listen_at({"127.0.0.1:0", "127.0.0.2:0"});
-  ASSERT_TRUE(both.ok()) << both.error().message;
-  EXPECT_EQ(both->sockets.size(), 2U);
-  const auto half = listen_at({"127.0.0.1:0", "192.0.2.7:0"});
-  ASSERT_FALSE(half.ok()) << "callers of the other would find nobody";
-  EXPECT_NE(half.error().message.find("(192.0.2.7: "), std::string::npos) << half.error().message;
-}
-
 TEST_F(ConnectionGateTest, AnAddressIsTheSameAtASocketForBothFamilies) {
   open({"[::]:0"});
   const PlainCaller caller(port);

@@ -12,7 +12,7 @@
 #include <optional>
 #include <string>
 
-#include "coordinator/services/listening.h"
+#include "coordinator/access/listening.h"
 
 namespace hyades::coordinator {
 namespace {
@@ -26,6 +26,7 @@ class ReceiveBound : public testing::TestWithParam<const char*> {
     core::Result<Listening> listening = listen_at({std::string(GetParam()) + ":0"});
     if (!listening && GetParam()[0] == '[') GTEST_SKIP() << "no IPv6 here";
     ASSERT_TRUE(listening) << listening.error().message;
+    ASSERT_TRUE(keep_beginnings(listening->sockets[0]));
     sockaddr_storage at{};
     socklen_t size = sizeof at;
     ASSERT_EQ(::getsockname(listening->sockets[0].get(), reinterpret_cast<sockaddr*>(&at), &size),

@@ -3,6 +3,7 @@
 
 #include <fstream>
 
+#include "coordinator/access/listening.h"
 #include "coordinator/operations/operation.h"
 #include "tests/coordinator/web/web_world.h"
 
@@ -356,6 +357,19 @@ TEST(WebServer, AnAddressThatIsTakenIsTold) {
   const auto second = WebServer::start(listen, *world.farm.controller, *world.farm.authority);
   ASSERT_FALSE(second.ok());
   EXPECT_NE(second.error().message.find(listen.address), std::string::npos);
+}
+
+/// At one that was left another user could take our place.
+TEST(WebServer, ListensAtAllThatANameStandsFor) {
+  WebWorld world;
+  world.start();
+  farm::Listen listen;
+  listen.address = "localhost:0";
+  const auto second = WebServer::start(listen, *world.farm.controller, *world.farm.authority);
+  ASSERT_TRUE(second.ok()) << second.error().message;
+  const std::string port = (*second)->url().substr((*second)->url().rfind(':'));
+  EXPECT_FALSE(listen_at({"127.0.0.1" + port}).ok());
+  EXPECT_FALSE(listen_at({"[::1]" + port}).ok());
 }
 
 TEST(WebServer, WhatIsNoRequestIsRefusedAndOthersAreServed) {

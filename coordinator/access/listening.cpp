@@ -1,4 +1,4 @@
-#include "coordinator/services/listening.h"
+#include "coordinator/access/listening.h"
 
 #include <arpa/inet.h>
 #include <linux/tcp.h>
@@ -17,15 +17,12 @@
 #include <fmt/format.h>
 
 #include "coordinator/access/address.h"
-#include "coordinator/services/receive_bound.h"
 
 namespace hyades::coordinator {
 namespace {
 
 /// Connections in the kernel's hands until accept().
 constexpr int kBacklog = 4096;
-/// How long what was sent may stay without an answer of the other machine.
-constexpr unsigned kAnswersWithinMs = 10'000;
 
 struct Endpoint {
   sockaddr_storage address{};
@@ -70,13 +67,13 @@ Endpoint wildcard(int family, in_port_t port) {
 
 std::string reason(int error) { return std::error_code(error, std::generic_category()).message(); }
 
-core::Status resolve(const HostAndPort& where, std::vector<Endpoint>& all) {
+/// Adds the addresses of one host.
+core::Status resolve(const char* host, const std::string& port, std::vector<Endpoint>& all) {
   addrinfo hints{};
   hints.ai_flags = AI_PASSIVE | AI_NUMERICSERV;
   hints.ai_socktype = SOCK_STREAM;
   addrinfo* found = nullptr;
-  const int failed = ::getaddrinfo(where.host.empty() ? nullptr : where.host.c_str(),
-                                   where.port.c_str(), &hints, &found);
+  const int failed = ::getaddrinfo(host, port.c_str(), &hints, &found);
   if (failed != 0) return core::Error{::gai_strerror(failed)};
   const std::unique_ptr<addrinfo, void (*)(addrinfo*)> owned(found, ::freeaddrinfo);
   for (const addrinfo* one = found; one != nullptr; one = one->ai_next) {
@@ -89,13 +86,20 @@ core::Status resolve(const HostAndPort& where, std::vector<Endpoint>& all) {
   return {};
 }
 
+core::Status resolve(const HostAndPort& where, std::vector<Endpoint>& all) {
+  if (where.host == "localhost") {
+    const core::Status found = resolve("127.0.0.1", where.port, all);
+    return found ? resolve("::1", where.port, all) : found;
+  }
+  return resolve(where.host.empty() ? nullptr : where.host.c_str(), where.port, all);
+}
+
 bool set(const core::Descriptor& socket, int level, int option, int value) {
   return ::setsockopt(socket.get(), level, option, &value, sizeof value) == 0;
 }
 
-/// Listens there, and puts the port in that it got; what errno tells where it does not. Those who
-/// connect get their options from here.
-int listen_there(Endpoint& endpoint, core::Descriptor& socket, bool& beginnings_are_kept) {
+/// Listens there, and puts the port in that it got; what errno tells where it does not.
+int listen_there(Endpoint& endpoint, core::Descriptor& socket) {
   socket =
       core::Descriptor(::socket(endpoint.family(), SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0));
   if (!socket.valid()) return errno;
@@ -105,8 +109,6 @@ int listen_there(Endpoint& endpoint, core::Descriptor& socket, bool& beginnings_
     return errno;
   }
   (void)set(socket, IPPROTO_TCP, TCP_NODELAY, 1);
-  (void)set(socket, IPPROTO_TCP, TCP_USER_TIMEOUT, kAnswersWithinMs);
-  beginnings_are_kept = keep_beginnings(socket);
   auto* address = reinterpret_cast<sockaddr*>(&endpoint.address);
   if (::bind(socket.get(), address, endpoint.size) != 0) return errno;
   if (::listen(socket.get(), kBacklog) != 0) return errno;
@@ -138,12 +140,9 @@ core::Result<Listening> listen_at(const std::vector<std::string>& addresses) {
   for (Endpoint& endpoint : endpoints) {
     if (listening.port != 0) endpoint.port() = htons(listening.port);
     core::Descriptor socket;
-    bool kept = false;
-    error = listen_there(endpoint, socket, kept);
+    error = listen_there(endpoint, socket);
     if (error == 0) {
       listening.port = ntohs(endpoint.port());
-      listening.beginnings_are_kept =
-          kept && (listening.sockets.empty() || listening.beginnings_are_kept);
       listening.sockets.push_back(std::move(socket));
       if (all) break;
     } else if (error == EADDRINUSE || !(all || endpoint.is_loopback_of_ipv6())) {
