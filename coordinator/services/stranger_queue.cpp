@@ -189,6 +189,7 @@ void StrangerQueue::place(Parties::iterator party) {
   Party& one = party->second;
   Turns& turns = turns_[party->first.first];
   turns.erase(one.place);
+  one.place = 0;  // it may be another's by the next time, whom a neighbourhood has taken it to
   if (one.turns.empty()) return;
   const int64_t first = one.turns.begin()->first;
   one.place = first < 0 ? first : one.turn;
