@@ -57,7 +57,7 @@ using hyades::farm::LogLevel;
 
 constexpr int kBadArguments = 2;
 constexpr double kDearest = 1e9;  // whatever the currency
-constexpr const char* kHttp = "127.0.0.1:8080";
+constexpr const char* kHttp = "localhost:8080";
 
 Duration seconds(double value) {
   return std::chrono::duration_cast<Duration>(std::chrono::duration<double>(value));

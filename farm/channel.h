@@ -27,7 +27,7 @@ struct Peer {
 
 /// How a coordinator is reached.
 struct Listen {
-  std::string address = "127.0.0.1:7700";  ///< HOST:PORT; port 0: one that is free
+  std::string address = "localhost:7700";  ///< HOST:PORT; port 0: one that is free
   std::string cert_file;                   ///< PEM, with key_file: TLS
   std::string key_file;
   std::string ca_file;  ///< PEM: clients must show a certificate that it signed; empty: need not

@@ -136,6 +136,9 @@ core::Result<Listening> listen_at(const std::vector<std::string>& addresses) {
     endpoints = {wildcard(AF_INET6, port), wildcard(AF_INET, port)};
   }
   Listening listening;
+  const auto may_miss = [&](const Endpoint& one, int why) {
+    return (why == EADDRNOTAVAIL || why == EAFNOSUPPORT) && (all || one.is_loopback_of_ipv6());
+  };
   int error = EADDRNOTAVAIL;
   for (Endpoint& endpoint : endpoints) {
     if (listening.port != 0) endpoint.port() = htons(listening.port);
@@ -145,7 +148,7 @@ core::Result<Listening> listen_at(const std::vector<std::string>& addresses) {
       listening.port = ntohs(endpoint.port());
       listening.sockets.push_back(std::move(socket));
       if (all) break;
-    } else if (error == EADDRINUSE || !(all || endpoint.is_loopback_of_ipv6())) {
+    } else if (!may_miss(endpoint, error)) {
       return fail(endpoints.size() > 1 ? endpoint.text() + ": " + reason(error) : reason(error));
     }
   }

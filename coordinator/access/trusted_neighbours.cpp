@@ -1,27 +1,43 @@
 #include "coordinator/access/trusted_neighbours.h"
 
+#include <algorithm>
 #include <utility>
 
 namespace hyades::coordinator {
+namespace {
+
+constexpr size_t kMostTokensOfOne = 4;
+
+}  // namespace
 
 void TrustedNeighbours::trust(const std::string& neighbourhood, const std::string& token_id,
                               Time now) {
   OfToken& own = tokens_[token_id];
   if (own.now.size() >= most_ || now - own.since >= time_) {
     for (const std::string& old : std::exchange(own.before, std::exchange(own.now, {}))) {
-      const auto found = token_of_.find(old);
-      const bool is_ours = found != token_of_.end() && found->second == token_id;
-      if (is_ours && !own.before.contains(old)) token_of_.erase(found);
+      if (!own.before.contains(old)) forget(old, token_id);
     }
     own.since = now;
   }
   own.now.insert(neighbourhood);
-  token_of_.insert_or_assign(neighbourhood, token_id);
+  std::vector<std::string>& shown = tokens_of_[neighbourhood];
+  if (std::find(shown.begin(), shown.end(), token_id) != shown.end()) return;
+  shown.push_back(token_id);
+  if (shown.size() > kMostTokensOfOne) shown.erase(shown.begin());
 }
 
-const std::string* TrustedNeighbours::token_of(const std::string& neighbourhood) const {
-  const auto found = token_of_.find(neighbourhood);
-  return found == token_of_.end() ? nullptr : &found->second;
+const std::vector<std::string>& TrustedNeighbours::tokens_of(
+    const std::string& neighbourhood) const {
+  static const std::vector<std::string> none;
+  const auto found = tokens_of_.find(neighbourhood);
+  return found == tokens_of_.end() ? none : found->second;
+}
+
+void TrustedNeighbours::forget(const std::string& neighbourhood, const std::string& token_id) {
+  const auto found = tokens_of_.find(neighbourhood);
+  if (found == tokens_of_.end()) return;
+  std::erase(found->second, token_id);
+  if (found->second.empty()) tokens_of_.erase(found);
 }
 
 }  // namespace hyades::coordinator

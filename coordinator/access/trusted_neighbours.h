@@ -5,6 +5,7 @@
 #include <map>
 #include <set>
 #include <string>
+#include <vector>
 
 namespace hyades::coordinator {
 
@@ -21,8 +22,9 @@ class TrustedNeighbours {
 
   /// Somebody of there has shown the token of this id (Caller::token_id).
   void trust(const std::string& neighbourhood, const std::string& token_id, Time now);
-  /// The token that was shown from there last; null where none was. Good until trust() is called.
-  const std::string* token_of(const std::string& neighbourhood) const;
+  /// The tokens that were shown from there, the last four at most: a token that somebody shows from
+  /// an address that he shares with others takes nothing from theirs. Good until trust() is called.
+  const std::vector<std::string>& tokens_of(const std::string& neighbourhood) const;
 
  private:
   /// In two generations, so that what is too old needs not be looked for one by one.
@@ -32,10 +34,12 @@ class TrustedNeighbours {
     Time since{};
   };
 
+  void forget(const std::string& neighbourhood, const std::string& token_id);
+
   std::chrono::hours time_;
   size_t most_;
   std::map<std::string, OfToken> tokens_;
-  std::map<std::string, std::string> token_of_;
+  std::map<std::string, std::vector<std::string>> tokens_of_;
 };
 
 }  // namespace hyades::coordinator

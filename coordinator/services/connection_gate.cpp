@@ -331,7 +331,7 @@ void ConnectionGate::take(core::Descriptor socket, std::string address) {
   const Id id = next_id_++;
   if (!watch(poll_, EPOLL_CTL_ADD, connection.socket, EPOLLRDHUP | EPOLLET, id)) return;
   const Neighbour neighbour = neighbour_at(connection.address, connection.socket.get());
-  strangers_.come(id, neighbour.name, neighbour.is_own_user);
+  strangers_.come(id, neighbour.name, neighbour.is_own_user, neighbour.group);
   by_address_[connection.address] = id;  // one before it from there was known, and is ending
   connections_.emplace(id, std::move(connection));
 }

@@ -3,24 +3,37 @@
 #include <algorithm>
 #include <iterator>
 #include <utility>
+#include <vector>
 
 namespace hyades::coordinator {
+namespace {
+
+std::string key_of_neighbourhood(const std::string& name) { return "one " + name; }
+std::string key_of_party(const std::string& name) { return "all " + name; }
+
+}  // namespace
 
 StrangerQueue::StrangerQueue(const Limits& limits)
     : limits_(limits), trusted_(limits.trust, limits.trusted) {
   limits_.kept = std::min(limits_.kept, limits_.inside / 3);
 }
 
-void StrangerQueue::come(Id id, const std::string& neighbourhood, bool own) {
+void StrangerQueue::come(Id id, const std::string& neighbourhood, bool own,
+                         const std::string& group) {
   const auto [of, is_new] = neighbourhoods_.try_emplace(neighbourhood);
   if (is_new) {
-    const std::string* token_id = trusted_.token_of(neighbourhood);
-    const Rank rank = own ? Rank::own : token_id != nullptr ? Rank::trusted : Rank::other;
-    join(of, rank, own ? "" : token_id != nullptr ? *token_id : neighbourhood);
+    const std::string* token_id = best_token_of(neighbourhood);
+    if (own) {
+      join(of, Rank::own, "");
+    } else if (token_id != nullptr) {
+      join(of, Rank::trusted, *token_id);
+    } else {
+      join(of, Rank::other, group.empty() ? neighbourhood : group);
+    }
   }
   std::list<Id>& waiting = of->second.waiting;
   if (waiting.empty()) {
-    stand_in_line(of, ++last_turn_);
+    stand_in_line(of, take_turn(key_of_neighbourhood(of->first)));
   } else {
     by_number_.erase({waiting.size(), &of->first});
   }
@@ -30,6 +43,10 @@ void StrangerQueue::come(Id id, const std::string& neighbourhood, bool own) {
 }
 
 std::optional<StrangerQueue::Id> StrangerQueue::let_in(Time now) {
+  if (now - given_up_since_ >= limits_.turn) {
+    given_up_before_ = std::exchange(given_up_, {});
+    given_up_since_ = now;
+  }
   const std::optional<Next> who = next();
   if (!who) return std::nullopt;
   const auto of = who->neighbourhood;
@@ -66,15 +83,13 @@ void StrangerQueue::know(Id id, const std::string& token_id, Time now) {
   if (found == strangers_.end()) return;
   const auto of = found->second.of;
   Neighbourhood& one = of->second;
-  if (rank_of(one) != Rank::own) {
-    trusted_.trust(of->first, token_id, now);
-    if (one.party->first != std::pair(Rank::trusted, token_id)) {
-      if (!one.waiting.empty()) leave_line(of);
-      if (rank_of(one) == Rank::other) trusted_inside_ += one.inside;
-      part(of);
-      join(of, Rank::trusted, token_id);
-      if (!one.waiting.empty()) stand_in_line(of, one.turn);
-    }
+  if (rank_of(one) != Rank::own) trusted_.trust(of->first, token_id, now);
+  if (rank_of(one) == Rank::other) {
+    if (!one.waiting.empty()) leave_line(of);
+    trusted_inside_ += one.inside;
+    part(of);
+    join(of, Rank::trusted, *best_token_of(of->first));
+    if (!one.waiting.empty()) stand_in_line(of, one.turn);
   }
   // Not for ever: whoever has a token and two addresses could keep all others out.
   const bool early = now < one.turn_began + limits_.patience_when_full;
@@ -91,7 +106,7 @@ void StrangerQueue::leave(Id id) {
     --stranger.of->second.inside;
     if (rank_of(stranger.of->second) != Rank::other) --trusted_inside_;
   } else {
-    stop_waiting(stranger);
+    give_up(stranger);
   }
   strangers_.erase(found);
   forget_if_empty(stranger.of);
@@ -161,6 +176,20 @@ StrangerQueue::Time StrangerQueue::expiry(Id id, Time since) const {
   return since + (pressed ? limits_.patience_when_full : limits_.patience);
 }
 
+/// Of the tokens that were shown from there the one with fewest neighbourhoods here: what others of
+/// this one have shown takes nothing from anybody.
+const std::string* StrangerQueue::best_token_of(const std::string& neighbourhood) const {
+  const auto crowd_of = [&](const std::string& token_id) {
+    const auto party = parties_.find({Rank::trusted, token_id});
+    return party == parties_.end() ? 0 : party->second.neighbourhoods;
+  };
+  const std::vector<std::string>& all = trusted_.tokens_of(neighbourhood);
+  const auto best = std::min_element(
+      all.begin(), all.end(),
+      [&](const std::string& a, const std::string& b) { return crowd_of(a) < crowd_of(b); });
+  return best == all.end() ? nullptr : &*best;
+}
+
 void StrangerQueue::join(Neighbourhoods::iterator one, Rank rank, const std::string& party) {
   one->second.party = parties_.try_emplace({rank, party}).first;
   ++one->second.party->second.neighbourhoods;
@@ -173,7 +202,8 @@ void StrangerQueue::part(Neighbourhoods::iterator one) {
 
 void StrangerQueue::stand_in_line(Neighbourhoods::iterator one, int64_t turn) {
   Party& party = one->second.party->second;
-  if (party.turns.empty()) party.turn = ++last_turn_;
+  const auto& [rank, name] = one->second.party->first;
+  if (party.turns.empty()) party.turn = take_turn(rank == Rank::other ? key_of_party(name) : "");
   party.turns.erase(one->second.turn);
   party.turns.emplace(turn, one);
   one->second.turn = turn;
@@ -189,7 +219,7 @@ void StrangerQueue::place(Parties::iterator party) {
   Party& one = party->second;
   Turns& turns = turns_[party->first.first];
   turns.erase(one.place);
-  one.place = 0;  // it may be another's by the next time, whom a neighbourhood has taken it to
+  one.place = 0;
   if (one.turns.empty()) return;
   const int64_t first = one.turns.begin()->first;
   one.place = first < 0 ? first : one.turn;
@@ -206,6 +236,33 @@ void StrangerQueue::stop_waiting(const Stranger& stranger) {
   } else {
     by_number_.emplace(one.waiting.size(), name);
   }
+}
+
+/// Of those that are trusted nobody waits for so long that it would matter.
+void StrangerQueue::give_up(const Stranger& stranger) {
+  const Neighbourhood& one = stranger.of->second;
+  const auto party = one.party;
+  const int64_t turn = one.turn;
+  stop_waiting(stranger);
+  if (rank_of(one) != Rank::other || !one.waiting.empty()) return;
+  if (given_up_.size() >= limits_.turns) return;
+  given_up_.insert_or_assign(key_of_neighbourhood(stranger.of->first), turn);
+  if (party->second.turns.empty()) {
+    given_up_.insert_or_assign(key_of_party(party->first.second), party->second.turn);
+  }
+}
+
+/// The one that was kept, or else the last.
+int64_t StrangerQueue::take_turn(const std::string& whose) {
+  for (auto* kept : {&given_up_, &given_up_before_}) {
+    const auto found = kept->find(whose);
+    if (found == kept->end()) continue;
+    const int64_t turn = found->second;
+    given_up_.erase(whose);
+    given_up_before_.erase(whose);
+    return turn;
+  }
+  return ++last_turn_;
 }
 
 void StrangerQueue::forget_if_empty(Neighbourhoods::iterator one) {

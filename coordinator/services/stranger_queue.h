@@ -20,8 +20,10 @@ namespace hyades::coordinator {
 /// Who of those that nobody knows yet may come in, who waits, and who has to go: bounds in all and
 /// for each neighbourhood (neighbourhood_of()). Some places are kept for neighbourhoods that are
 /// trusted, of which somebody has shown a token lately, so that no crowd of others keeps a farm's
-/// own machines out. Neighbourhoods take turns; those of one token have one turn together, so that
-/// it makes no crowd that comes before others. Knows no sockets and no clock. Not thread-safe.
+/// own machines out. Neighbourhoods take turns; those of one token, and those that may be one
+/// (Neighbour::group), have one turn together, so that they make no crowd that comes before others.
+/// Who gives up while he waits, as clients do that try again, keeps his turn. Knows no sockets and
+/// no clock. Not thread-safe.
 class StrangerQueue {
  public:
   using Id = uint64_t;
@@ -36,16 +38,19 @@ class StrangerQueue {
     size_t waiting = 4000;
     std::chrono::milliseconds patience{10'000};  ///< with one who is inside, until known
     std::chrono::milliseconds patience_when_full{
-        2000};                     ///< the same where others wait for the place
-    std::chrono::hours trust{24};  ///< how long a neighbourhood is trusted at least
-    size_t trusted = 4096;         ///< how many of one token are at least
+        2000};                       ///< the same where others wait for the place
+    std::chrono::hours trust{24};    ///< how long a neighbourhood is trusted at least
+    size_t trusted = 4096;           ///< how many of one token are at least
+    std::chrono::seconds turn{300};  ///< how long a turn is kept at least of who has given up
+    size_t turns = 8192;             ///< how many are at most
   };
 
   explicit StrangerQueue(const Limits& limits);
 
   /// One comes, and waits; `own`: it is our own user, who comes before all others, and for whom
-  /// there are places beside theirs.
-  void come(Id id, const std::string& neighbourhood, bool own = false);
+  /// there are places beside theirs. `group`: of neighbourhoods that may be one; empty: none.
+  void come(Id id, const std::string& neighbourhood, bool own = false,
+            const std::string& group = {});
   /// Lets the next one in, if one may be. Of each neighbourhood the last that came is the first:
   /// who has waited for long has given up, or soon will.
   std::optional<Id> let_in(Time now);
@@ -82,14 +87,14 @@ class StrangerQueue {
     Time turn_began;   ///< when one came in in turn
   };
   using Neighbourhoods = std::map<std::string, Neighbourhood>;
-  /// Those who have one turn together: our own user, the neighbourhoods of a token, or one of which
-  /// nobody is known.
+  /// Those who have one turn together: our own user, the neighbourhoods of a token, or a group of
+  /// which nobody is known.
   struct Party {
     size_t neighbourhoods = 0;
     std::map<int64_t, Neighbourhoods::iterator> turns{};  ///< where somebody waits, the next first
     int64_t turn = 0;
     int64_t place = 0;  ///< key in turns_, while somebody waits: `turn`, or the first of `turns`
-                        ///< where that is out of turn
+                        ///< where that is out of turn; 0: nobody waits
   };
   struct Stranger {
     Neighbourhoods::iterator of;
@@ -115,12 +120,15 @@ class StrangerQueue {
   std::optional<Next> next_of(Rank rank) const;
   std::optional<Next> next() const;
 
+  const std::string* best_token_of(const std::string& neighbourhood) const;
   void join(Neighbourhoods::iterator one, Rank rank, const std::string& party);
   void part(Neighbourhoods::iterator one);
   void stand_in_line(Neighbourhoods::iterator one, int64_t turn);
   void leave_line(Neighbourhoods::iterator one);
   void place(Parties::iterator party);
   void stop_waiting(const Stranger& stranger);
+  void give_up(const Stranger& stranger);
+  int64_t take_turn(const std::string& whose);
   void forget_if_empty(Neighbourhoods::iterator one);
 
   Limits limits_;
@@ -134,6 +142,11 @@ class StrangerQueue {
   std::map<Rank, Turns> turns_;
   size_t trusted_inside_ = 0;
   TrustedNeighbours trusted_;
+  /// Turns of those who have given up, of neighbourhoods and of groups: of the last while, and of
+  /// the while before.
+  std::map<std::string, int64_t> given_up_;
+  std::map<std::string, int64_t> given_up_before_;
+  Time given_up_since_{};
   std::set<std::pair<size_t, const std::string*>> by_number_;  ///< the same, by how many wait
 };
 

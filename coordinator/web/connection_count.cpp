@@ -1,6 +1,7 @@
 #include "coordinator/web/connection_count.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace hyades::coordinator {
 
@@ -19,8 +20,12 @@ bool ConnectionCount::may_come(const Neighbour& owner) const {
 }
 
 std::string ConnectionCount::token_key(const Neighbour& owner) const {
-  const std::string* token_id = known_.token_of(owner.name);
-  return token_id == nullptr ? "" : "token " + *token_id;
+  std::string fewest;
+  for (const std::string& token_id : known_.tokens_of(owner.name)) {
+    std::string key = "token " + token_id;
+    if (fewest.empty() || count_of(key) < count_of(fewest)) fewest = std::move(key);
+  }
+  return fewest;
 }
 
 size_t ConnectionCount::count_of(const std::string& whose) const {

@@ -24,7 +24,7 @@ class ConnectionCount {
   struct Place {
     std::string owner{};
     std::string group{};  ///< empty: none
-    std::string token{};  ///< key of the token by which the owner was known; empty: by none
+    std::string token{};  ///< key of a token that was shown from there; empty: none was
   };
 
   /// Whether the owner may have one more. Our own user, who may run a proxy, may have all.
@@ -39,6 +39,7 @@ class ConnectionCount {
   void leave(const Place& place);
 
  private:
+  /// Of those that were shown from there, the one by which fewest are open; empty: none was.
   std::string token_key(const Neighbour& owner) const;
   size_t count_of(const std::string& whose) const;
   void add(const Place& place, bool comes);

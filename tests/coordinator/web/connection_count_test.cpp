@@ -75,6 +75,20 @@ TEST(ConnectionCount, OneTokenTakesNotAllThatIsKept) {
   EXPECT_TRUE(count.may_come({"address 999"}));
 }
 
+/// Nor by showing it from an address that others use, too.
+TEST(ConnectionCount, AnotherTokenTakesNoPlaces) {
+  ConnectionCount count(4000, 1000, 8);
+  for (int i = 0; i < 600; ++i) {
+    const Neighbour one{"address " + std::to_string(i)};
+    count.know(one, "eve's", {});
+    for (int k = 0; k < 8 && count.may_come(one); ++k) count.enter(one);
+  }
+  count.know(kOne, "ada's", {});
+  count.know(kOne, "eve's", {});
+  EXPECT_TRUE(count.may_come(kOne));
+  EXPECT_EQ(count.enter(kOne).token, "token ada's");
+}
+
 /// By one token all of a group are known.
 TEST(ConnectionCount, AGroupThatIsKnownLeavesPlaces) {
   ConnectionCount count(4000, 1000, 8);
