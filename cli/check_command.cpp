@@ -134,7 +134,9 @@ core::Status print_files(const LoadedJob& loaded, const std::string& made) {
   nlohmann::ordered_json list = nlohmann::ordered_json::array();
   for (const core::AssetRecord& file : all) {
     list.push_back({{"path", file.reference}, {"sha256", file.sha256}, {"size", file.size}});
-    if (made.empty() || !loaded.files->is_made(file.reference)) continue;
+    // Of a .blend all is made, in a folder that goes when this program ends.
+    const bool is_made = loaded.blend || loaded.files->is_made(file.reference);
+    if (made.empty() || !is_made) continue;
     auto bytes = loaded.files->files().open(file.reference);
     if (!bytes) return bytes.error();
     const std::string path = (std::filesystem::path(made) / file.sha256).string();

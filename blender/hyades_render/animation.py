@@ -88,17 +88,23 @@ def _looked_at(_engine: Any, depsgraph: Any) -> tuple[hyades.Job, bool]:
     """The scene at one frame, which the job does not say; whether it may be another one at others."""
     job = export_job(depsgraph, settings=depsgraph.scene.hyades).job
     job.frames = None
+    job.outputs = [outputs.Png(file="looked-at.png", exposure=_exposure(depsgraph.scene))]
     return job, movement.may_move(depsgraph)
 
 
+def _exposure(scene: Any) -> float:
+    return min(max(exposure_stops(scene), -64.0), 64.0)
+
+
 def _steps(scene: Any, frames: range, numbered: bool, name: str) -> Generator[Any, None, None]:
-    moments = Moments(many=len(frames) > 1)
+    moments, exposures = Moments(many=len(frames) > 1), set()
     before = scene.frame_current, scene.frame_subframe
     try:
         for number, frame in enumerate(frames, start=1):
             yield f"exporting frame {number} of {len(frames)}"
             scene.frame_set(frame)
             capture.look_at_final(scene, moments.export)
+            exposures.add(_exposure(scene))
     finally:
         scene.frame_set(before[0], subframe=before[1])
     exported = moments.job(text_of(frames) if len(frames) > 1 else frames[0])
@@ -108,6 +114,9 @@ def _steps(scene: Any, frames: range, numbered: bool, name: str) -> Generator[An
     job.outputs, more = _outputs(scene, job, numbered)
     more += _of_mattes(job.outputs[0], exported.names)
     more += _of_drawings(scene)
+    if len(exposures) > 1:
+        words = f"the exposure moves; all frames have that of frame {scene.frame_current}"
+        more.append(Complaint("color management", words))
     yield Exported(job, [*exported.complaints, *more], exported.names)
 
 
@@ -128,7 +137,7 @@ def _outputs(scene: Any, job: hyades.Job, numbered: bool) -> tuple[list[outputs.
     image, found = scene.render.image_settings, []
     kind = image.file_format
     stem = _stem(scene, job.name, numbered and kind != "FFMPEG")
-    shown: dict[str, Any] = {"exposure": min(max(exposure_stops(scene), -64.0), 64.0)}
+    shown: dict[str, Any] = {"exposure": _exposure(scene)}
     job.color = view_of(scene) if kind not in _EXR else None
     if job.color is None:
         shown["tone_map"] = _TONE_MAPS.get(scene.view_settings.view_transform, "srgb")

@@ -28,7 +28,7 @@ class Moments:
     def export(self, engine: Any, depsgraph: Any) -> None:
         """The frame at which `depsgraph` stands. For render() of an engine: only engines may look at other times."""
         scene = depsgraph.scene
-        frame = scene.frame_current
+        frame, camera = scene.frame_current, scene.camera
         position, self._shutter = shutter(scene)
         times = {0.0, self._shutter}
         if depsgraph.view_layer_eval.use_pass_vector:
@@ -39,7 +39,7 @@ class Moments:
         try:
             for time in sorted(times):
                 _set_time(engine, frame + position * self._shutter + time)
-                self._add(frame + time, depsgraph, True)
+                self._add(frame + time, depsgraph, True, camera)
         finally:
             _set_time(engine, frame)
         if scene.render.motion_blur_shutter > 1:
@@ -62,10 +62,11 @@ class Moments:
                 raise ValueError(f"{what}: more than one job can say: render its frames one by one")
             self._complain("motion blur", f"{what}: too many; they stand still")
 
-    def _add(self, time: float, depsgraph: Any, moves: bool) -> None:
+    def _add(self, time: float, depsgraph: Any, moves: bool, camera: Any = None) -> None:
+        """`camera`: through which the frame is seen, though a marker changes it between two frames; None: the scene's."""
         if time in self._times:
             return  # the end of one frame is the beginning of the next
-        exported = export_job(depsgraph, settings=depsgraph.scene.hyades, moves=moves)
+        exported = export_job(depsgraph, settings=depsgraph.scene.hyades, moves=moves, camera=camera)
         if self._jobs:
             joined_frames.share(self._jobs[-1], exported.job)
         self._times.append(time)

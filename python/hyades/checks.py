@@ -190,6 +190,8 @@ def list_of(kind: Callable[[Key, Any], Any]) -> Callable[[Key, Any], Any]:
 class Entries(dict[str, Any]):
     """Things of a job by name, which checks what it is given as keys do."""
 
+    _key: Key | None = None
+
     def __init__(self, key: Key | None = None, values: Mapping[str, Any] | None = None) -> None:
         super().__init__()
         self._key = key

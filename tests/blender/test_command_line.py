@@ -7,6 +7,7 @@ import signal
 import subprocess
 import time
 import unittest
+from unittest import mock
 
 import bpy
 import hyades
@@ -26,15 +27,14 @@ class CommandLine(AddOnTest):
         bpy.ops.wm.save_as_mainfile(filepath=str(self.blend))
         return self.blend
 
+    def variables(self) -> dict[str, str]:
+        """With which programs find this Blender, and the add-on."""
+        blender = os.environ.get("HYADES_BLENDER") or bpy.app.binary_path
+        return {"HYADES_BLENDER": blender, "HYADES_BLENDER_ADDON": str(ROOT / "blender")}
+
     def hyades(self, *words, status: int = 0, **variables: str) -> str:
         """What the program says on standard error."""
-        environment = {
-            **os.environ,
-            "HYADES_BLENDER": os.environ.get("HYADES_BLENDER") or bpy.app.binary_path,
-            "HYADES_BLENDER_ADDON": str(ROOT / "blender"),
-            "TMPDIR": str(self.folder),
-            **variables,
-        }
+        environment = {**os.environ, **self.variables(), "TMPDIR": str(self.folder), **variables}
         run = subprocess.run(
             [HYADES, *map(str, words)], cwd=self.folder, env=environment, text=True, stderr=subprocess.PIPE
         )
@@ -93,6 +93,9 @@ class CommandLine(AddOnTest):
         farm.worker()
         words = ("submit", self.save(), "--coordinator", farm.listen, "--watch", "-q")
         self.hyades(*words)
+        with mock.patch.dict(os.environ, self.variables()):
+            from_python = hyades.Farm(farm.address).submit(self.blend)
+        self.assertEqual(hyades.Farm(farm.address).wait(from_python).state, "done")
         job = hyades.Farm(farm.address).find("film")
         self.assertEqual((job.state, job.frames), ("done", 1))
 

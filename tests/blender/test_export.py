@@ -1,6 +1,8 @@
 """What the exporter makes of things in a scene: the job says the same, or it is told by name."""
 
 import math
+import os
+import tempfile
 import unittest
 from types import SimpleNamespace
 from unittest import mock
@@ -334,6 +336,67 @@ class NotThere(ExportTest):
         self.assertEqual(self.export()[1], "")
         self.scene.render.use_motion_blur = True
         self.assertEqual(self.export()[1], "object 'Cube': motion blur is for all: it is blurred where it moves")
+
+    def test_switches_that_jobs_have_not_are_told(self) -> None:
+        render, layer = self.scene.render, bpy.context.view_layer
+        layer.use_sky = False
+        job, said = self.export()
+        self.assertEqual((job.environment, said), (None, ""))
+        layer.use_solid = False
+        render.film_transparent = self.scene.cycles.film_transparent_glass = True
+        render.use_motion_blur = True
+        self.scene.cycles.rolling_shutter_type = "TOP"
+        render.motion_blur_shutter_curve.curves[0].points[0].location = (0.4, 0.5)
+        bpy.data.objects["Cube"].cycles.use_deform_motion = False
+        said = self.export()[1]
+        for what in (
+            "output: view layer 'ViewLayer' is to have no surfaces",
+            "film: Transparent Glass",
+            "render: the rolling shutter",
+            "render: the curve of the shutter",
+            "object 'Cube': motion blur is for all: it is blurred where it changes its shape",
+        ):
+            self.assertIn(what, said)
+
+    def test_libraries_that_are_not_there_are_told(self) -> None:
+        with tempfile.TemporaryDirectory() as folder:
+            path = f"{folder}/shelf.blend"
+            bpy.data.libraries.write(path, {bpy.data.objects["Cube"]})
+            with bpy.data.libraries.load(path, link=True) as (there, here):
+                here.objects = ["Cube"]
+            self.assertEqual(self.export()[1], "")
+            os.unlink(path)
+            self.assertIn(f"there is no file {path}: what is linked from it is left out", self.export()[1])
+
+    def test_an_exposure_that_moves_is_told(self) -> None:
+        view = self.scene.view_settings
+        self.scene.frame_start, self.scene.frame_end = 1, 4
+        for frame, stops in ((1, 0.0), (4, -6.0)):
+            view.exposure = stops
+            view.keyframe_insert("exposure", frame=frame)
+        self.assertEqual(animation.moving_frames(self.scene), range(1, 5))
+        exported = animation.job_of(self.scene, frames=range(1, 5), name="fade")
+        self.assertIn("color management: the exposure moves", "\n".join(map(str, exported.complaints)))
+
+    def test_a_frame_is_seen_through_its_own_camera(self) -> None:
+        other = bpy.data.objects.new("Other", bpy.data.cameras.new("Other"))
+        other.location = (50, 0, 0)
+        self.scene.collection.objects.link(other)
+        for frame, camera in ((1, self.scene.camera), (3, other)):
+            self.scene.timeline_markers.new(camera.name, frame=frame).camera = camera
+        self.scene.render.use_motion_blur = True
+        job = animation.job_of(self.scene, frames=range(3, 4), name="cut").job
+        self.assertEqual(list(job.camera.look_from), [50, 0, 0])
+
+    def test_colors_of_what_is_clear_are_told(self) -> None:
+        made, shader = self.material("Stained", "ShaderNodeBsdfTransparent")
+        texture = made.node_tree.nodes.new("ShaderNodeTexChecker")
+        bpy.data.objects["Cube"].data.materials[0] = made
+        for socket, told in (("Fac", False), ("Color", True)):
+            made.node_tree.links.new(texture.outputs[socket], shader.inputs[0])
+            self.assertEqual("has no colour in the job" in self.export()[1], told, socket)
+        made.cycles.use_transparent_shadow = False
+        self.assertIn("material 'Stained': Transparent Shadows is on in the job", self.export()[1])
 
     def test_limits_of_panoramas_are_told(self) -> None:
         lens = self.scene.camera.data

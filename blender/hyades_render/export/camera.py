@@ -13,10 +13,9 @@ from .context import Context
 from .film import picture_size
 
 
-def add_camera(context: Context) -> None:
-    """Says the camera of the job. Without one in the scene the job keeps its default, with a complaint. ValueError: a
-    final render by what is no camera."""
-    camera = context.scene.camera
+def add_camera(context: Context, camera: Any) -> None:
+    """Says the camera of the job. Without one (None) the job keeps its default, with a complaint. ValueError: a final
+    render by what is no camera."""
     if camera is None:
         context.complain("scene", "there is no camera")
         return

@@ -23,6 +23,7 @@ def add_film(context: Context) -> None:
     context.job.film = film
     if getattr(getattr(context.scene, "cycles", None), "use_fast_gi", False):
         context.complain("render", "Fast GI Approximation is left out: all light is rendered")
+    _tell_of_settings(context)
     if render.pixel_aspect_x != render.pixel_aspect_y:
         context.complain("output", "pixels that are not square are not supported; square ones are used")
     context.job.sampling = hyades.Sampling(samples=int(context.setting("samples", 64)))
@@ -31,6 +32,21 @@ def add_film(context: Context) -> None:
     context.job.integrator = integrators.Path(max_depth=int(context.setting("max_depth", 32)))
     fps = render.fps / render.fps_base
     context.job.frames = hyades.Frames(range=max(context.scene.frame_current, 0), fps=fps)
+
+
+def _tell_of_settings(context: Context) -> None:
+    """Complains of switches of the render and its view layer that the job has not, where they are not as they come."""
+    render, cycles = context.scene.render, getattr(context.scene, "cycles", None)
+    layer = context.depsgraph.view_layer_eval
+    if render.film_transparent and getattr(cycles, "film_transparent_glass", False):
+        context.complain("film", "Transparent Glass is left out: glass is there")
+    if render.use_motion_blur and getattr(cycles, "rolling_shutter_type", "NONE") != "NONE":
+        context.complain("render", "the rolling shutter is left out: all rows are seen at once")
+    points = [tuple(point.location) for point in render.motion_blur_shutter_curve.curves[0].points]
+    if render.use_motion_blur and any(y < 0.99 for x, y in points if 0.02 < x < 0.98):
+        context.complain("render", "the curve of the shutter is left out: it opens and closes at once")
+    if not layer.use_solid:
+        context.complain("output", f"view layer '{layer.name}' is to have no surfaces; they are there")
 
 
 def picture_size(render) -> list[int]:

@@ -86,6 +86,9 @@ def _translated(translator: Translator, data: Any) -> Made:
         return Made(materials.Black(), 0.0, None, None, None, False)
     surface = graph.find_input(output, (), "Surface")
     closure = closure_of(translator, surface)
+    clear = not values.is_constant(closure.opacity, 1) or closure.mixed_opacity
+    if clear and not getattr(data.cycles, "use_transparent_shadow", True):
+        translator.context.complain(translator.where, "Transparent Shadows is on in the job: light goes through its shadows")
     medium = medium_of(translator, graph.find_input(output, (), "Volume"))
     has_surface = surface is not None and surface.socket.is_linked
     material = with_opacity(closure) or materials.Black()

@@ -107,31 +107,19 @@ class Surface:
     def attribute(self, name: str) -> Optional[Array]:
         """(c, 3) of any attribute; None: there is none of that name, or of a kind that is no number."""
         attribute = self.mesh.attributes.get(name)
-        kinds = {"FLOAT": ("value", 1), "INT": ("value", 1), "FLOAT_VECTOR": ("vector", 3), "FLOAT2": ("vector", 2)}
+        kinds = {"FLOAT": ("value", 1), "INT": ("value", 1), "BOOLEAN": ("value", 1), "FLOAT_VECTOR": ("vector", 3), "FLOAT2": ("vector", 2)}
         if attribute is None:
-            return self._group(name)
+            return None  # Cycles knows no groups of vertices either
         if attribute.data_type in ("FLOAT_COLOR", "BYTE_COLOR"):
             return self._on_corners(attribute, self._array(f"color {name}", attribute.data, "color", 4))[:, :3]
         if attribute.data_type not in kinds:
             return None
         key, width = kinds[attribute.data_type]
-        kind = "int32" if attribute.data_type == "INT" else "float32"
+        kind = {"INT": "int32", "BOOLEAN": "bool"}.get(attribute.data_type, "float32")
         found = self._array(f"attribute {name}", attribute.data, key, width, kind).reshape(-1, width).astype("float64")
         found = numpy.repeat(found, 3, axis=1) if width == 1 else found
         found = numpy.concatenate([found, numpy.zeros((len(found), 1))], axis=1) if width == 2 else found
         return self._on_corners(attribute, found)
-
-    def _group(self, name: str) -> Optional[Array]:
-        """A group of vertices by name."""
-        group = self.object.vertex_groups.get(name) if hasattr(self.object, "vertex_groups") else None
-        if group is None:
-            return None
-        weights = numpy.zeros(len(self.mesh.vertices))
-        for vertex in self.mesh.vertices:
-            for one in vertex.groups:
-                if one.group == group.index:
-                    weights[vertex.index] = one.weight
-        return numpy.repeat(weights[self.corner_vertices][:, None], 3, axis=1)
 
     def _on_corners(self, attribute: Any, values: Array) -> Array:
         if attribute.domain == "CORNER":

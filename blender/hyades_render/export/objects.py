@@ -128,6 +128,8 @@ def _tell_of_settings(context: Context, object: Any) -> None:
     cycles = getattr(object, "cycles", None)
     if context.scene.render.use_motion_blur and not getattr(cycles, "use_motion_blur", True):
         context.complain(f"object '{object.name}'", "motion blur is for all: it is blurred where it moves")
+    elif context.scene.render.use_motion_blur and not getattr(cycles, "use_deform_motion", True):
+        context.complain(f"object '{object.name}'", "motion blur is for all: it is blurred where it changes its shape")
     if getattr(cycles, "shadow_terminator_offset", 0.0) > 0:
         context.complain(f"object '{object.name}'", "its Shadow Terminator offset is left out: edges of shadows have another remedy")
 

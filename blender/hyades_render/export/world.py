@@ -25,7 +25,7 @@ _SUN = 145.0
 def add_world(context: Context) -> None:
     """Says environment and atmosphere of the job."""
     world = context.scene.world
-    if world is None:
+    if world is None or not context.depsgraph.view_layer_eval.use_sky:
         return
     context.job.environment = _environment(context, world)
     if not is_world_seen(context, world) or context.scene.render.film_transparent:

@@ -50,6 +50,17 @@ def image() -> None:
 
 
 @scene(samples=64)
+def colors_as_numbers() -> None:
+    """A link from a colour to a number takes its luminance, of which the strength is what is left above a number."""
+    made, texture = board("ShaderNodeTexImage", properties={"image": picture(), "interpolation": "Closest"})
+    most = node(made, "ShaderNodeMath")
+    most.operation = "MAXIMUM"
+    link(made, texture.outputs["Color"], most.inputs[0])
+    most.inputs[1].default_value = 0.4
+    link(made, most.outputs[0], shader_of(made).inputs["Strength"])
+
+
+@scene(samples=64)
 def image_of_floats() -> None:
     made = bpy.data.images.new("Light", 8, 8, float_buffer=True)
     made.pixels.foreach_set([0.2 + 0.1 * (i % 7) if i % 4 < 3 else 1.0 for i in range(8 * 8 * 4)])

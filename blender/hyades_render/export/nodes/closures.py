@@ -168,8 +168,14 @@ def emission(translator: Translator, output: Output) -> Closure:
 
 @shader("BSDF_TRANSPARENT")
 def transparent(translator: Translator, output: Output) -> Closure:
-    color = translator.value(output.input("Color"))
-    if not values.is_texture(color) and len(set(values.color(color))) > 1:
+    end = output.input("Color")
+    color = translator.value(end)
+    found = graph.source(end) if end is not None else None
+    if values.is_texture(color):
+        is_coloured = isinstance(found, Output) and found.socket.type == "RGBA" and not graph.becomes_grey(end)
+    else:
+        is_coloured = len(set(values.color(color))) > 1
+    if is_coloured:
         translator.complain(output.node, "what lets light straight through has no colour in the job; its luminance is used")
     return Closure(None, 0.0, values.rest(held(values.number(color))))
 

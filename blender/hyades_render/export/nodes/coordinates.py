@@ -38,6 +38,8 @@ def coordinates_of(translator: Translator, output: Output, unlinked: str) -> Coo
 
 def _of_node(translator: Translator, output: Output) -> Coordinates:
     node, kind = output.node, output.socket.identifier
+    if getattr(node, "from_instancer", False):
+        raise Inexpressible(output, "coordinates of what instances an object are not supported")
     if node.type == "MAPPING":
         return _mapped(translator, output)
     if node.type == "UVMAP":

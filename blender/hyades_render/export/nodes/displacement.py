@@ -43,6 +43,11 @@ def displacement_of(translator: Translator, data: Any, output: Any) -> Optional[
     if found.node.type != "DISPLACEMENT":
         translator.complain(found.node, "only a node Displacement displaces; the surface stays where it is")
         return None
+    if found.node.space != "OBJECT":
+        translator.complain(found.node, "distances are in the object's space, not the world's")
+    normal = found.input("Normal")
+    if normal is not None and normal.socket.is_linked:
+        translator.complain(found.node, "its normal is left out: the surface moves along its own")
     # The key moved from Cycles' to the material's own in 4.1.
     method = getattr(data, "displacement_method", None) or getattr(data.cycles, "displacement_method", "BUMP")
     if method == "BOTH":

@@ -35,32 +35,45 @@ def find_input(node: Any, groups: tuple[Any, ...], *names: str) -> Optional[Inpu
 
 def source(end: Input) -> Output | Input:
     """What an input gets its value from: another node's output, or itself (or a group's input), unlinked."""
+    return _followed(end)[0]
+
+
+def becomes_grey(end: Input) -> bool:
+    """Whether what comes to an input is a colour that the input, or one on the way, takes as a number: its luminance."""
+    found, passed = _followed(end)
+    return isinstance(found, Output) and found.socket.type == "RGBA" and "VALUE" in passed
+
+
+def _followed(end: Input) -> tuple[Output | Input, set[str]]:
+    """The source, and the types of the inputs on the way to it."""
+    passed: set[str] = set()
     for _ in range(1000):  # more nodes than that in a row are a loop
+        passed.add(end.socket.type)
         link = next((link for link in end.socket.links if not link.is_muted), None) if end.socket.is_linked else None
         if link is None:
-            return end
+            return end, passed
         node, socket, groups = link.from_node, link.from_socket, end.groups
         if node.type == "REROUTE":
             end = Input(node.inputs[0], groups)
         elif node.type == "GROUP_INPUT" and groups:
             outer = _same(groups[-1].inputs, socket)
             if outer is None:
-                return end
+                return end, passed
             end = Input(outer, groups[:-1])
         elif node.type == "GROUP" and node.node_tree is not None and not node.mute:
             inner = next((n for n in node.node_tree.nodes if n.type == "GROUP_OUTPUT" and n.is_active_output), None)
             target = _same(inner.inputs, socket) if inner is not None else None
             if target is None:
-                return end
+                return end, passed
             end = Input(target, (*groups, node))
         elif node.mute:
             through = next((link.from_socket for link in node.internal_links if link.to_socket == socket), None)
             if through is None:
-                return end
+                return end, passed
             end = Input(through, groups)
         else:
-            return Output(node, socket, groups)
-    return end
+            return Output(node, socket, groups), passed
+    return end, passed
 
 
 def _same(sockets: Any, socket: Any) -> Any:

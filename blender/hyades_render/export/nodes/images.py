@@ -8,14 +8,13 @@ from typing import Any, NamedTuple
 import numpy
 
 from ..files import may_be_sent
-from .evaluate.images import pixels_of
+from .evaluate.images import LINEAR, pixels_of
 from .graph import Output
 from .translator import Inexpressible, Translator
 
 _READ = {".png", ".jpg", ".jpeg", ".tif", ".tiff", ".exr", ".hdr", ".tga", ".bmp", ".qoi", ".ppm", ".pgm", ".pfm"}
 _MARK = "<UDIM>"
 _TILES = range(1001, 1101)  # that a job has
-_LINEAR = {"Linear", "Linear Rec.709", "Non-Color", "Raw", "Generic Data"}
 
 
 class PackedFile:
@@ -40,8 +39,8 @@ class ImageFile(NamedTuple):
 def image_file(translator: Translator, node: Any, output: Output) -> ImageFile:
     """The picture of a node. Inexpressible: it is a film, or its file is missing or no picture."""
     image = node.image
-    space = "linear" if image.colorspace_settings.name in _LINEAR else "srgb"
-    if image.colorspace_settings.name not in _LINEAR | {"sRGB"}:
+    space = "linear" if image.colorspace_settings.name in LINEAR else "srgb"
+    if image.colorspace_settings.name not in LINEAR | {"sRGB"}:
         translator.complain(node, f"the colour space {image.colorspace_settings.name} is read as sRGB")
     path = os.path.abspath(_path(image))
     if image.source == "TILED":

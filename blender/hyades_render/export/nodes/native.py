@@ -5,6 +5,7 @@ from __future__ import annotations
 from copy import copy
 from typing import Any
 
+import numpy
 from hyades import textures
 
 from . import values
@@ -83,8 +84,10 @@ def _color_attribute(translator: Translator, output: Output, name: str) -> Value
         raise Inexpressible(output, "this is the second colour attribute of one material")
     translator.color_attribute = name
     kind = output.socket.identifier
-    channel = {"Alpha": "alpha", "Fac": "luminance"}.get(kind, "color")
-    return textures.VertexColor(channel=channel)
+    if kind == "Fac":  # of the node Attribute: the mean of the three
+        parts = [textures.Channel(input=textures.VertexColor(), channel=name) for name in ("red", "green", "blue")]
+        return values.product(values.total(values.total(parts[0], parts[1]), parts[2]), 1 / 3)
+    return textures.VertexColor(channel="alpha" if kind == "Alpha" else "color")
 
 
 @native("TEX_CHECKER")
@@ -95,6 +98,8 @@ def checker(translator: Translator, output: Output) -> Value:
         first, second = 1.0, 0.0
     else:
         first, second = _input(translator, output, "Color1"), _input(translator, output, "Color2")
+    if place.space == "uv" and numpy.abs(place.matrix[2, [0, 1, 3]]).max() > 1e-9:
+        raise Inexpressible(output, "UV coordinates of the job have two parts, and the mapping makes a third of them")
     # Blender nudges places away from whole numbers, which for the zeros of flat things matters: 0 lies in cell 0.
     nudge = [0.000001 * 0.999999] * 3
     keys = {"a": held(second, 0, 1e18), "b": held(first, 0, 1e18)}

@@ -40,7 +40,9 @@ def _taken(translator: Translator, found: Output, keys: dict[str, Any]) -> Input
             return None
         texture = translator.value(found.input("Color"))
         if values.is_texture(texture):
-            if node.uv_map and translator.uv_map in (None, node.uv_map):
+            if node.uv_map and translator.uv_map not in (None, node.uv_map):
+                translator.complain(node, "this is the second UV map of one material: the tangents are those of the first")
+            elif node.uv_map:
                 translator.uv_map = node.uv_map
             translator.uv_map = translator.uv_map if translator.uv_map is not None else ""
             keys["normal_map"] = materials.NormalMap(texture=texture)

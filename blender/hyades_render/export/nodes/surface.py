@@ -81,6 +81,10 @@ class PartPoints(Points):
         found = self._of_corners(self.part.surface.attribute(name))
         return self._zeros(3) if found is None else found
 
+    def alpha(self, name: str) -> Array:
+        found = self._of_corners(self.part.surface.color(name)) if name else None
+        return self._zeros(4)[:, 0] + 1 if found is None else found[:, 3]
+
     def matrix(self) -> Array:
         self.part.is_of_object = True
         return self.part.surface.matrix

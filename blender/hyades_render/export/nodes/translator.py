@@ -88,7 +88,8 @@ class Translator:
         make = NATIVE.get(found.node.type)
         if make is None:
             raise Inexpressible(found, "no texture of the job means this")
-        return make(self, found)
+        value = make(self, found)
+        return values.grey(value) if graph.becomes_grey(end) else value
 
     def _folded(self, end: Input, found: Output) -> Optional[Value]:
         """The value of a graph that is the same everywhere."""

@@ -32,6 +32,11 @@ def number(value: Value) -> Any:
     return sum(part * share for part, share in zip(value, _LUMINANCE))
 
 
+def grey(value: Value) -> Value:
+    """The luminance of a value."""
+    return textures.Channel(input=value, channel="luminance") if is_texture(value) else number(value)
+
+
 def held(value: Value, low: float = 0.0, high: float = 1.0) -> Any:
     """A constant within these ends; of textures the renderer sees to it."""
     if is_texture(value):

@@ -8,7 +8,7 @@ import numpy
 
 from ..graph import Output
 from ..translator import Inexpressible
-from .evaluator import LUMINANCE, Evaluator, computes
+from .evaluator import Evaluator, computes
 
 Array = Any
 
@@ -24,10 +24,10 @@ def attribute(at: Evaluator, output: Output) -> Array:
     node = output.node
     if node.attribute_type != "GEOMETRY":
         return _of_object(at, output)
-    value = at.points.attribute(node.attribute_name)
     if output.socket.identifier == "Alpha":
-        return at.points.color(node.attribute_name)[:, 3]
-    return value @ LUMINANCE if output.socket.identifier == "Fac" else value
+        return at.points.alpha(node.attribute_name)
+    value = at.points.attribute(node.attribute_name)
+    return value.mean(axis=-1) if output.socket.identifier == "Fac" else value
 
 
 def _of_object(at: Evaluator, output: Output) -> Array:

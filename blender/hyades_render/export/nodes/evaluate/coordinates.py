@@ -18,6 +18,7 @@ Array = Any
 @computes("TEX_COORD")
 def texture_coordinate(at: Evaluator, output: Output) -> Array:
     kind = output.socket.identifier
+    _refuse_instancer(output)
     if kind == "Generated":
         return at.points.generated()
     if kind == "UV":
@@ -36,7 +37,13 @@ def texture_coordinate(at: Evaluator, output: Output) -> Array:
 
 @computes("UVMAP")
 def uv_map(at: Evaluator, output: Output) -> Array:
+    _refuse_instancer(output)
     return with_zero(at.points.uv(output.node.uv_map))
+
+
+def _refuse_instancer(output: Output) -> None:
+    if output.node.from_instancer:
+        raise Inexpressible(output, "coordinates of what instances an object are not supported")
 
 
 @computes("NEW_GEOMETRY")

@@ -11,6 +11,7 @@ from ..translator import Inexpressible
 from .evaluator import Evaluator, computes
 
 Array = Any
+LINEAR = {"Linear", "Linear Rec.709", "Non-Color", "Raw", "Generic Data"}
 DARKER = 2.2
 """Light that a share of an sRGB code is, as an exponent of the share."""
 
@@ -31,7 +32,10 @@ def pixels_of(output: Output, context: Any) -> Array:
             found = numpy.concatenate([found[..., :1]] * (3 if image.channels == 1 else 1) + (
                 [found[..., 1:3]] if image.channels == 3 else []) + [numpy.ones((height, width, 1))], axis=2)
         # Files of bytes come as their codes.
-        if not image.is_float and image.colorspace_settings.name == "sRGB":
+        space = image.colorspace_settings.name
+        if not image.is_float and space not in LINEAR:
+            if space != "sRGB":
+                context.complain(f"image '{image.name}'", f"the colour space {space} is read as sRGB")
             color = found[..., :3]
             linear = numpy.where(color <= 0.04045, color / 12.92, ((color + 0.055) / 1.055) ** 2.4)
             found = numpy.concatenate([linear, found[..., 3:4]], axis=2)

@@ -40,6 +40,10 @@ class Points:
         """(n, 3) of any attribute."""
         raise Varies
 
+    def alpha(self, name: str) -> Array:
+        """(n,) of the colour attribute of that name; 1 where there is none."""
+        raise Varies
+
     def matrix(self) -> Array:
         """(4, 4) from the object's space to Blender's world."""
         raise Varies
