@@ -42,8 +42,9 @@ class MeshData:
         self.normals = _columns("normals", normals, count, (3,))
         self.uvs = _columns("uvs", uvs, count, (2,))
         self.second_uvs = _columns("second_uvs", second_uvs, count, (2,))
-        if colors is not None and numpy.asarray(colors).dtype.kind in "iu":
-            raise ValueError("colors are whole numbers, expected linear ones from 0 to 1; if they go from 0 to 255, divide by 255")
+        given = numpy.asarray(0 if colors is None else colors)
+        if given.dtype.kind in "iu" and given.max(initial=0) > 1:
+            raise ValueError("colors are whole numbers beyond 1; if they go from 0 to 255, divide by 255")
         self.colors = _columns("colors", colors, count, (3, 4))
         self.tangents = _columns("tangents", tangents, count, (4,))
 

@@ -44,6 +44,8 @@ class Render(unittest.TestCase):
         uvs = [[0, 0], [1, 0], [1, 1], [0, 1]]
         red = [1, 0, 0]
         square = hyades.MeshData(points, [[0, 1, 2], [0, 2, 3]], uvs=uvs, colors=[red] * 4)
+        with self.assertRaisesRegex(ValueError, "divide by 255"):
+            hyades.MeshData(points, [[0, 1, 2]], colors=numpy.full((4, 3), 26, "uint8"))
         halves = numpy.zeros((1, 2, 3), "float32")
         halves[0, 0], halves[0, 1] = [0.8, 0, 0], [0, 0.8, 0]
         image = textures.Image(file=halves, filter="nearest", wrap="clamp")
