@@ -395,7 +395,8 @@ class NotThere(ExportTest):
         for socket, told in (("Fac", False), ("Color", True)):
             made.node_tree.links.new(texture.outputs[socket], shader.inputs[0])
             self.assertEqual("has no colour in the job" in self.export()[1], told, socket)
-        made.cycles.use_transparent_shadow = False
+        owner = made if hasattr(made, "use_transparent_shadow") else made.cycles
+        owner.use_transparent_shadow = False
         self.assertIn("material 'Stained': Transparent Shadows is on in the job", self.export()[1])
 
     def test_limits_of_panoramas_are_told(self) -> None:

@@ -87,7 +87,8 @@ def _translated(translator: Translator, data: Any) -> Made:
     surface = graph.find_input(output, (), "Surface")
     closure = closure_of(translator, surface)
     clear = not values.is_constant(closure.opacity, 1) or closure.mixed_opacity
-    if clear and not getattr(data.cycles, "use_transparent_shadow", True):
+    # The key moved from Cycles' to the material's own in 4.2.
+    if clear and not getattr(data if hasattr(data, "use_transparent_shadow") else data.cycles, "use_transparent_shadow", True):
         translator.context.complain(translator.where, "Transparent Shadows is on in the job: light goes through its shadows")
     medium = medium_of(translator, graph.find_input(output, (), "Volume"))
     has_surface = surface is not None and surface.socket.is_linked
