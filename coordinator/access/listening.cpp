@@ -17,6 +17,7 @@
 #include <fmt/format.h>
 
 #include "coordinator/access/address.h"
+#include "core/base/text.h"
 
 namespace hyades::coordinator {
 namespace {
@@ -87,7 +88,8 @@ core::Status resolve(const char* host, const std::string& port, std::vector<Endp
 }
 
 core::Status resolve(const HostAndPort& where, std::vector<Endpoint>& all) {
-  if (where.host == "localhost") {
+  const std::string host = core::lower_case(where.host);
+  if (host == "localhost" || host == "localhost.") {
     const core::Status found = resolve("127.0.0.1", where.port, all);
     return found ? resolve("::1", where.port, all) : found;
   }

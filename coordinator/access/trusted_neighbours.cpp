@@ -1,6 +1,5 @@
 #include "coordinator/access/trusted_neighbours.h"
 
-#include <algorithm>
 #include <utility>
 
 namespace hyades::coordinator {
@@ -21,7 +20,7 @@ void TrustedNeighbours::trust(const std::string& neighbourhood, const std::strin
   }
   own.now.insert(neighbourhood);
   std::vector<std::string>& shown = tokens_of_[neighbourhood];
-  if (std::find(shown.begin(), shown.end(), token_id) != shown.end()) return;
+  std::erase(shown, token_id);
   shown.push_back(token_id);
   if (shown.size() > kMostTokensOfOne) shown.erase(shown.begin());
 }

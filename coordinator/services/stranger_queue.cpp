@@ -6,13 +6,6 @@
 #include <vector>
 
 namespace hyades::coordinator {
-namespace {
-
-std::string key_of_neighbourhood(const std::string& name) { return "one " + name; }
-std::string key_of_party(const std::string& name) { return "all " + name; }
-
-}  // namespace
-
 StrangerQueue::StrangerQueue(const Limits& limits)
     : limits_(limits), trusted_(limits.trust, limits.trusted) {
   limits_.kept = std::min(limits_.kept, limits_.inside / 3);
@@ -33,19 +26,20 @@ void StrangerQueue::come(Id id, const std::string& neighbourhood, bool own,
   }
   std::list<Id>& waiting = of->second.waiting;
   if (waiting.empty()) {
-    stand_in_line(of, take_turn(key_of_neighbourhood(of->first)));
-  } else {
-    by_number_.erase({waiting.size(), &of->first});
+    stand_in_line(of, take_turn(of_neighbourhoods_, of->first));
   }
   waiting.push_back(id);
-  by_number_.emplace(waiting.size(), &of->first);
+  const auto party = of->second.party;
+  recount(party, party->second.waiting + 1, party->second.turn);
   strangers_.emplace(id, Stranger{of, std::prev(waiting.end())});
 }
 
 std::optional<StrangerQueue::Id> StrangerQueue::let_in(Time now) {
-  if (now - given_up_since_ >= limits_.turn) {
-    given_up_before_ = std::exchange(given_up_, {});
-    given_up_since_ = now;
+  if (now - kept_since_ >= limits_.turn) {
+    for (KeptTurns* kept : {&of_parties_, &of_neighbourhoods_}) {
+      kept->before = std::exchange(kept->now, {});
+    }
+    kept_since_ = now;
   }
   const std::optional<Next> who = next();
   if (!who) return std::nullopt;
@@ -53,7 +47,7 @@ std::optional<StrangerQueue::Id> StrangerQueue::let_in(Time now) {
   Neighbourhood& one = of->second;
   const Id id = one.waiting.back();
   if (one.turn > 0) one.turn_began = now;
-  one.party->second.turn = ++last_turn_;
+  recount(one.party, one.party->second.waiting, ++last_turn_);
   stop_waiting(strangers_.at(id));
   if (!one.waiting.empty()) stand_in_line(of, ++last_turn_);
   ++one.inside;
@@ -64,7 +58,8 @@ std::optional<StrangerQueue::Id> StrangerQueue::let_in(Time now) {
 
 std::optional<StrangerQueue::Id> StrangerQueue::turn_away() {
   if (waiting() <= limits_.waiting) return std::nullopt;
-  const Id id = neighbourhoods_.at(*by_number_.rbegin()->second).waiting.front();
+  const Party& most = by_number_.rbegin()->second->second;
+  const Id id = most.turns.rbegin()->second->second.waiting.front();
   leave(id);
   return id;
 }
@@ -85,11 +80,14 @@ void StrangerQueue::know(Id id, const std::string& token_id, Time now) {
   Neighbourhood& one = of->second;
   if (rank_of(one) != Rank::own) trusted_.trust(of->first, token_id, now);
   if (rank_of(one) == Rank::other) {
-    if (!one.waiting.empty()) leave_line(of);
+    const size_t waiting = one.waiting.size();
+    if (waiting > 0) leave_line(of);
+    recount(one.party, one.party->second.waiting - waiting, one.party->second.turn);
     trusted_inside_ += one.inside;
     part(of);
     join(of, Rank::trusted, *best_token_of(of->first));
-    if (!one.waiting.empty()) stand_in_line(of, one.turn);
+    if (waiting > 0) stand_in_line(of, one.turn);
+    recount(one.party, one.party->second.waiting + waiting, one.party->second.turn);
   }
   // Not for ever: whoever has a token and two addresses could keep all others out.
   const bool early = now < one.turn_began + limits_.patience_when_full;
@@ -203,7 +201,10 @@ void StrangerQueue::part(Neighbourhoods::iterator one) {
 void StrangerQueue::stand_in_line(Neighbourhoods::iterator one, int64_t turn) {
   Party& party = one->second.party->second;
   const auto& [rank, name] = one->second.party->first;
-  if (party.turns.empty()) party.turn = take_turn(rank == Rank::other ? key_of_party(name) : "");
+  if (party.turns.empty()) {
+    const int64_t own = rank == Rank::other ? take_turn(of_parties_, name) : ++last_turn_;
+    recount(one->second.party, party.waiting, own);
+  }
   party.turns.erase(one->second.turn);
   party.turns.emplace(turn, one);
   one->second.turn = turn;
@@ -226,40 +227,44 @@ void StrangerQueue::place(Parties::iterator party) {
   turns.emplace(one.place, party);
 }
 
-void StrangerQueue::stop_waiting(const Stranger& stranger) {
-  Neighbourhood& one = stranger.of->second;
-  const std::string* name = &stranger.of->first;
-  by_number_.erase({one.waiting.size(), name});
-  one.waiting.erase(stranger.place);
-  if (one.waiting.empty()) {
-    leave_line(stranger.of);
-  } else {
-    by_number_.emplace(one.waiting.size(), name);
-  }
+void StrangerQueue::recount(Parties::iterator party, size_t waiting, int64_t turn) {
+  Party& one = party->second;
+  by_number_.erase({one.waiting, one.turn});
+  one.waiting = waiting;
+  one.turn = turn;
+  if (waiting > 0) by_number_.emplace(std::pair(waiting, turn), party);
 }
 
-/// Of those that are trusted nobody waits for so long that it would matter.
+void StrangerQueue::stop_waiting(const Stranger& stranger) {
+  Neighbourhood& one = stranger.of->second;
+  one.waiting.erase(stranger.place);
+  recount(one.party, one.party->second.waiting - 1, one.party->second.turn);
+  if (one.waiting.empty()) leave_line(stranger.of);
+}
+
 void StrangerQueue::give_up(const Stranger& stranger) {
   const Neighbourhood& one = stranger.of->second;
   const auto party = one.party;
   const int64_t turn = one.turn;
   stop_waiting(stranger);
   if (rank_of(one) != Rank::other || !one.waiting.empty()) return;
-  if (given_up_.size() >= limits_.turns) return;
-  given_up_.insert_or_assign(key_of_neighbourhood(stranger.of->first), turn);
-  if (party->second.turns.empty()) {
-    given_up_.insert_or_assign(key_of_party(party->first.second), party->second.turn);
-  }
+  const std::string& name = party->first.second;
+  if (name != stranger.of->first) keep(of_neighbourhoods_, stranger.of->first, turn);
+  if (party->second.turns.empty()) keep(of_parties_, name, party->second.turn);
+}
+
+void StrangerQueue::keep(KeptTurns& kept, const std::string& whose, int64_t turn) const {
+  if (kept.now.size() < limits_.turns) kept.now.insert_or_assign(whose, turn);
 }
 
 /// The one that was kept, or else the last.
-int64_t StrangerQueue::take_turn(const std::string& whose) {
-  for (auto* kept : {&given_up_, &given_up_before_}) {
-    const auto found = kept->find(whose);
-    if (found == kept->end()) continue;
+int64_t StrangerQueue::take_turn(KeptTurns& kept, const std::string& whose) {
+  for (auto* some : {&kept.now, &kept.before}) {
+    const auto found = some->find(whose);
+    if (found == some->end()) continue;
     const int64_t turn = found->second;
-    given_up_.erase(whose);
-    given_up_before_.erase(whose);
+    kept.now.erase(whose);
+    kept.before.erase(whose);
     return turn;
   }
   return ++last_turn_;

@@ -42,7 +42,7 @@ class StrangerQueue {
     std::chrono::hours trust{24};    ///< how long a neighbourhood is trusted at least
     size_t trusted = 4096;           ///< how many of one token are at least
     std::chrono::seconds turn{300};  ///< how long a turn is kept at least of who has given up
-    size_t turns = 8192;             ///< how many are at most
+    size_t turns = 8192;             ///< how many are at most, of parties and within groups each
   };
 
   explicit StrangerQueue(const Limits& limits);
@@ -54,8 +54,9 @@ class StrangerQueue {
   /// Lets the next one in, if one may be. Of each neighbourhood the last that came is the first:
   /// who has waited for long has given up, or soon will.
   std::optional<Id> let_in(Time now);
-  /// Where more wait than may: one of them, who has to go. Of the neighbourhood of which most wait
-  /// the one that has waited longest, so that a crowd turns away nobody but itself.
+  /// Where more wait than may: one of them, who has to go. Of those who have one turn together the
+  /// party of which most wait, of these the neighbourhood that is last in line, and of it the one
+  /// that has waited longest: so that a crowd turns away nobody but itself.
   std::optional<Id> turn_away();
   /// Those that have been inside for too long, who have to go.
   std::vector<Id> expel(Time now);
@@ -91,6 +92,7 @@ class StrangerQueue {
   /// which nobody is known.
   struct Party {
     size_t neighbourhoods = 0;
+    size_t waiting = 0;
     std::map<int64_t, Neighbourhoods::iterator> turns{};  ///< where somebody waits, the next first
     int64_t turn = 0;
     int64_t place = 0;  ///< key in turns_, while somebody waits: `turn`, or the first of `turns`
@@ -102,6 +104,14 @@ class StrangerQueue {
   };
   /// Those of whom somebody waits, the next first.
   using Turns = std::map<int64_t, Parties::iterator>;
+
+  /// Turns of those who have given up, of the last while and of the while before.
+  struct KeptTurns {
+    std::map<std::string, int64_t> now{};
+    std::map<std::string, int64_t> before{};
+  };
+  void keep(KeptTurns& kept, const std::string& whose, int64_t turn) const;
+  int64_t take_turn(KeptTurns& kept, const std::string& whose);
 
   static Rank rank_of(const Neighbourhood& one) { return one.party->first.first; }
   bool is_full(const Neighbourhood& one) const { return one.inside >= limits_.inside_of_one; }
@@ -126,9 +136,9 @@ class StrangerQueue {
   void stand_in_line(Neighbourhoods::iterator one, int64_t turn);
   void leave_line(Neighbourhoods::iterator one);
   void place(Parties::iterator party);
+  void recount(Parties::iterator party, size_t waiting, int64_t turn);
   void stop_waiting(const Stranger& stranger);
   void give_up(const Stranger& stranger);
-  int64_t take_turn(const std::string& whose);
   void forget_if_empty(Neighbourhoods::iterator one);
 
   Limits limits_;
@@ -142,12 +152,11 @@ class StrangerQueue {
   std::map<Rank, Turns> turns_;
   size_t trusted_inside_ = 0;
   TrustedNeighbours trusted_;
-  /// Turns of those who have given up, of neighbourhoods and of groups: of the last while, and of
-  /// the while before.
-  std::map<std::string, int64_t> given_up_;
-  std::map<std::string, int64_t> given_up_before_;
-  Time given_up_since_{};
-  std::set<std::pair<size_t, const std::string*>> by_number_;  ///< the same, by how many wait
+  KeptTurns of_parties_;         ///< of those of which nobody is known
+  KeptTurns of_neighbourhoods_;  ///< within groups, whose many addresses take no party's room
+  Time kept_since_{};
+  std::map<std::pair<size_t, int64_t>, Parties::iterator>
+      by_number_;  ///< by how many wait, and turn
 };
 
 }  // namespace hyades::coordinator

@@ -7,7 +7,7 @@ namespace hyades::coordinator {
 
 bool ConnectionCount::may_come(const Neighbour& owner) const {
   const size_t kept = most_ / 8;
-  const std::string token = token_key(owner);
+  const std::string token = token_key(owner, false);
   const bool known = !token.empty();
   const size_t most = owner.is_own_user ? most_ : known ? most_ - kept / 4 : most_ - kept;
   if (open_ >= most) return false;
@@ -19,13 +19,14 @@ bool ConnectionCount::may_come(const Neighbour& owner) const {
   return count_of(owner.name) < std::max(sure_, std::min(most_of_one_, (most - open_) / 4));
 }
 
-std::string ConnectionCount::token_key(const Neighbour& owner) const {
-  std::string fewest;
+std::string ConnectionCount::token_key(const Neighbour& owner, bool most) const {
+  std::string best;
   for (const std::string& token_id : known_.tokens_of(owner.name)) {
     std::string key = "token " + token_id;
-    if (fewest.empty() || count_of(key) < count_of(fewest)) fewest = std::move(key);
+    const bool is_better = most ? count_of(key) >= count_of(best) : count_of(key) < count_of(best);
+    if (best.empty() || is_better) best = std::move(key);
   }
-  return fewest;
+  return best;
 }
 
 size_t ConnectionCount::count_of(const std::string& whose) const {
@@ -34,7 +35,7 @@ size_t ConnectionCount::count_of(const std::string& whose) const {
 }
 
 ConnectionCount::Place ConnectionCount::enter(const Neighbour& owner) {
-  Place place{owner.name, owner.group, token_key(owner)};
+  Place place{owner.name, owner.group, token_key(owner, true)};
   add(place, true);
   return place;
 }

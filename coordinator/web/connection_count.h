@@ -39,8 +39,10 @@ class ConnectionCount {
   void leave(const Place& place);
 
  private:
-  /// Of those that were shown from there, the one by which fewest are open; empty: none was.
-  std::string token_key(const Neighbour& owner) const;
+  /// Of those that were shown from there, the one by which most or fewest are open; empty: none
+  /// was. By that of fewest it is judged, and for that of most it counts: so the token of somebody
+  /// who shares an address takes nothing from those of others.
+  std::string token_key(const Neighbour& owner, bool most) const;
   size_t count_of(const std::string& whose) const;
   void add(const Place& place, bool comes);
 

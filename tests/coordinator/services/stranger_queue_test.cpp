@@ -357,6 +357,29 @@ TEST(StrangerQueue, AGroupHasOneTurnAndItsOwnEachTheirs) {
   EXPECT_LE(time_to_come_in(other, users, "honest", "users of this machine"), 80s);
 }
 
+/// However many addresses of one network give up, or crowd: they take no other's turn, nor turn
+/// away anybody else.
+TEST(StrangerQueue, AGroupTakesNoTurnsThatAreKeptForOthers) {
+  StrangerQueue queue({});
+  Crowd crowd(queue, 400, "");
+  let_in_all(queue, kBegin);
+  StrangerQueue::Id next = 2'000'000;
+  for (int i = 0; i < 10'000; ++i, ++next) {
+    queue.come(next, "of a network " + std::to_string(i), false, "network");
+    queue.leave(next);
+  }
+  EXPECT_LE(time_to_come_in(queue, crowd, "honest", ""), 80s);
+  StrangerQueue full({});
+  Crowd network(full, 4000, "network");
+  full.come(1, "honest");
+  for (int i = 0; i < 100; ++i) {
+    full.come(next++, "more " + std::to_string(i), false, "network");
+    while (const auto away = full.turn_away()) ASSERT_NE(*away, 1U);
+  }
+  Ids in = let_in_all(full);
+  EXPECT_EQ(std::count(in.begin(), in.end(), 1U), 1);
+}
+
 /// A token that somebody shows from an address that he shares takes nothing from the others there.
 TEST(StrangerQueue, AnotherTokenTakesNoTurn) {
   StrangerQueue queue({});

@@ -86,7 +86,7 @@ TEST(ConnectionCount, AnotherTokenTakesNoPlaces) {
   count.know(kOne, "ada's", {});
   count.know(kOne, "eve's", {});
   EXPECT_TRUE(count.may_come(kOne));
-  EXPECT_EQ(count.enter(kOne).token, "token ada's");
+  EXPECT_EQ(count.enter(kOne).token, "token eve's");
 }
 
 /// By one token all of a group are known.
