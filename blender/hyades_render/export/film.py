@@ -21,11 +21,7 @@ def add_film(context: Context) -> None:
     if render.use_border:
         film.crop = _crop(render, size)
     context.job.film = film
-    if getattr(getattr(context.scene, "cycles", None), "use_fast_gi", False):
-        context.complain("render", "Fast GI Approximation is left out: all light is rendered")
     _tell_of_settings(context)
-    if render.pixel_aspect_x != render.pixel_aspect_y:
-        context.complain("output", "pixels that are not square are not supported; square ones are used")
     context.job.sampling = hyades.Sampling(samples=int(context.setting("samples", 64)))
     if context.setting("noise", 0) > 0:
         context.job.sampling.noise = context.setting("noise", 0)
@@ -38,6 +34,10 @@ def _tell_of_settings(context: Context) -> None:
     """Complains of switches of the render and its view layer that the job has not, where they are not as they come."""
     render, cycles = context.scene.render, getattr(context.scene, "cycles", None)
     layer = context.depsgraph.view_layer_eval
+    if getattr(cycles, "use_fast_gi", False):
+        context.complain("render", "Fast GI Approximation is left out: all light is rendered")
+    if render.pixel_aspect_x != render.pixel_aspect_y:
+        context.complain("output", "pixels that are not square are not supported; square ones are used")
     if render.film_transparent and getattr(cycles, "film_transparent_glass", False):
         context.complain("film", "Transparent Glass is left out: glass is there")
     if render.use_motion_blur and getattr(cycles, "rolling_shutter_type", "NONE") != "NONE":

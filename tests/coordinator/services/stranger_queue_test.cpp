@@ -295,8 +295,7 @@ class Crowd {
   Crowd(StrangerQueue& queue, int addresses, const std::string& group) : queue_(queue) {
     for (int i = 0; i < addresses; ++i) come(group + " " + std::to_string(i), group);
   }
-  /// Somebody has gone, or come in; false: he is not of this crowd.
-  bool has(StrangerQueue::Id id) const { return all_.contains(id); }
+  /// One of them has gone.
   void comes_again(StrangerQueue::Id id) {
     const auto of = all_.extract(id);
     come(of.mapped().first, of.mapped().second);
@@ -338,23 +337,21 @@ std::chrono::nanoseconds time_to_come_in(StrangerQueue& queue, Crowd& crowd,
   return 600s;
 }
 
-TEST(StrangerQueue, WhoTriesAgainHasNotLostHisTurn) {
+/// The same beside a crowd of so many addresses of `theirs`, a group or "".
+std::chrono::nanoseconds time_beside(int addresses, const std::string& theirs,
+                                     const std::string& group) {
   StrangerQueue queue({});
-  Crowd crowd(queue, 400, "");
+  Crowd crowd(queue, addresses, theirs);
   let_in_all(queue, kBegin);
-  EXPECT_LE(time_to_come_in(queue, crowd, "honest", ""), 80s);
+  return time_to_come_in(queue, crowd, "honest", group);
 }
+
+TEST(StrangerQueue, WhoTriesAgainHasNotLostHisTurn) { EXPECT_LE(time_beside(400, "", ""), 80s); }
 
 /// Nor among those who may be one, as the users of a machine.
 TEST(StrangerQueue, AGroupHasOneTurnAndItsOwnEachTheirs) {
-  StrangerQueue queue({});
-  Crowd crowd(queue, 2000, "network");
-  let_in_all(queue, kBegin);
-  EXPECT_LE(time_to_come_in(queue, crowd, "honest", ""), 3s);
-  StrangerQueue other({});
-  Crowd users(other, 400, "users of this machine");
-  let_in_all(other, kBegin);
-  EXPECT_LE(time_to_come_in(other, users, "honest", "users of this machine"), 80s);
+  EXPECT_LE(time_beside(2000, "network", ""), 3s);
+  EXPECT_LE(time_beside(400, "users of this machine", "users of this machine"), 80s);
 }
 
 /// However many addresses of one network give up, or crowd: they take no other's turn, nor turn
