@@ -49,8 +49,8 @@ const GalleryJob kJobs[] = {{"quickstart", 320, 144, 10, 0.1},
                             {"materials", 480, 240, 64, 0.1},
                             {"media", 64, 32, 64, 0.1},
                             {"god-rays", 224, 112, 10, 0.1},
-                            {"cloud", 64, 32, 32, 0.1},
-                            {"sky-shell", 320, 160, 10, 0.1}};
+                            {"cloud", 320, 160, 12, 0.15},
+                            {"sky-shell", 320, 160, 10, 0.12}};
 
 YamlScene small(const GalleryJob& job, const std::string& integrator, int samples) {
   const std::string folder = std::string("jobs/") + job.name;
