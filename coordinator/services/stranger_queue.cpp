@@ -15,18 +15,16 @@ void StrangerQueue::come(Id id, const std::string& neighbourhood, bool own,
                          const std::string& group) {
   const auto [of, is_new] = neighbourhoods_.try_emplace(neighbourhood);
   if (is_new) {
-    const std::string* token_id = best_token_of(neighbourhood);
     if (own) {
-      join(of, Rank::own, "");
-    } else if (token_id != nullptr) {
-      join(of, Rank::trusted, *token_id);
+      join(of, {Rank::own, ""});
     } else {
-      join(of, Rank::other, group.empty() ? neighbourhood : group);
+      join(of, {Rank::other, group.empty() ? neighbourhood : group});
+      join_best_token(of);
     }
   }
   std::list<Id>& waiting = of->second.waiting;
   if (waiting.empty()) {
-    stand_in_line(of, take_turn(of_neighbourhoods_, of->first));
+    stand_in_line(of, take_turn(of_neighbourhoods_[rank_of(of->second)], of->first));
   }
   waiting.push_back(id);
   const auto party = of->second.party;
@@ -36,8 +34,8 @@ void StrangerQueue::come(Id id, const std::string& neighbourhood, bool own,
 
 std::optional<StrangerQueue::Id> StrangerQueue::let_in(Time now) {
   if (now - kept_since_ >= limits_.turn) {
-    for (KeptTurns* kept : {&of_parties_, &of_neighbourhoods_}) {
-      kept->before = std::exchange(kept->now, {});
+    for (auto* all : {&of_parties_, &of_neighbourhoods_}) {
+      for (auto& [rank, kept] : *all) kept.before = std::exchange(kept.now, {});
     }
     kept_since_ = now;
   }
@@ -49,6 +47,7 @@ std::optional<StrangerQueue::Id> StrangerQueue::let_in(Time now) {
   if (one.turn > 0) one.turn_began = now;
   recount(one.party, one.party->second.waiting, ++last_turn_);
   stop_waiting(strangers_.at(id));
+  if (rank_of(one) == Rank::trusted) join_best_token(of);
   if (!one.waiting.empty()) stand_in_line(of, ++last_turn_);
   ++one.inside;
   if (rank_of(one) != Rank::other) ++trusted_inside_;
@@ -78,16 +77,9 @@ void StrangerQueue::know(Id id, const std::string& token_id, Time now) {
   if (found == strangers_.end()) return;
   const auto of = found->second.of;
   Neighbourhood& one = of->second;
-  if (rank_of(one) != Rank::own) trusted_.trust(of->first, token_id, now);
-  if (rank_of(one) == Rank::other) {
-    const size_t waiting = one.waiting.size();
-    if (waiting > 0) leave_line(of);
-    recount(one.party, one.party->second.waiting - waiting, one.party->second.turn);
-    trusted_inside_ += one.inside;
-    part(of);
-    join(of, Rank::trusted, *best_token_of(of->first));
-    if (waiting > 0) stand_in_line(of, one.turn);
-    recount(one.party, one.party->second.waiting + waiting, one.party->second.turn);
+  if (rank_of(one) != Rank::own) {
+    trusted_.trust(of->first, token_id, now);
+    join_best_token(of);
   }
   // Not for ever: whoever has a token and two addresses could keep all others out.
   const bool early = now < one.turn_began + limits_.patience_when_full;
@@ -174,23 +166,34 @@ StrangerQueue::Time StrangerQueue::expiry(Id id, Time since) const {
   return since + (pressed ? limits_.patience_when_full : limits_.patience);
 }
 
-/// Of the tokens that were shown from there the one with fewest neighbourhoods here: what others of
-/// this one have shown takes nothing from anybody.
-const std::string* StrangerQueue::best_token_of(const std::string& neighbourhood) const {
-  const auto crowd_of = [&](const std::string& token_id) {
-    const auto party = parties_.find({Rank::trusted, token_id});
-    return party == parties_.end() ? 0 : party->second.neighbourhoods;
-  };
-  const std::vector<std::string>& all = trusted_.tokens_of(neighbourhood);
-  const auto best = std::min_element(
-      all.begin(), all.end(),
-      [&](const std::string& a, const std::string& b) { return crowd_of(a) < crowd_of(b); });
-  return best == all.end() ? nullptr : &*best;
+void StrangerQueue::join(Neighbourhoods::iterator one, const PartyOf& party) {
+  one->second.party = parties_.try_emplace(party).first;
+  ++one->second.party->second.neighbourhoods;
 }
 
-void StrangerQueue::join(Neighbourhoods::iterator one, Rank rank, const std::string& party) {
-  one->second.party = parties_.try_emplace({rank, party}).first;
-  ++one->second.party->second.neighbourhoods;
+/// Of the tokens that were shown from there the one with fewest other neighbourhoods here: what
+/// others of this one have shown takes nothing from anybody. Stays where none is known.
+void StrangerQueue::join_best_token(Neighbourhoods::iterator one) {
+  const auto others_of = [&](const std::string& token_id) {
+    const auto party = parties_.find({Rank::trusted, token_id});
+    if (party == parties_.end()) return size_t{0};
+    return party->second.neighbourhoods - (party == one->second.party ? 1 : 0);
+  };
+  const std::vector<std::string>& all = trusted_.tokens_of(one->first);
+  const auto best = std::min_element(
+      all.begin(), all.end(),
+      [&](const std::string& a, const std::string& b) { return others_of(a) < others_of(b); });
+  if (best == all.end() || one->second.party->first == PartyOf{Rank::trusted, *best}) return;
+  const size_t waiting = one->second.waiting.size();
+  if (waiting > 0) leave_line(one);
+  recount(one->second.party, one->second.party->second.waiting - waiting,
+          one->second.party->second.turn);
+  if (rank_of(one->second) == Rank::other) trusted_inside_ += one->second.inside;
+  part(one);
+  join(one, {Rank::trusted, *best});
+  if (waiting > 0) stand_in_line(one, one->second.turn);
+  recount(one->second.party, one->second.party->second.waiting + waiting,
+          one->second.party->second.turn);
 }
 
 void StrangerQueue::part(Neighbourhoods::iterator one) {
@@ -202,8 +205,7 @@ void StrangerQueue::stand_in_line(Neighbourhoods::iterator one, int64_t turn) {
   Party& party = one->second.party->second;
   const auto& [rank, name] = one->second.party->first;
   if (party.turns.empty()) {
-    const int64_t own = rank == Rank::other ? take_turn(of_parties_, name) : ++last_turn_;
-    recount(one->second.party, party.waiting, own);
+    recount(one->second.party, party.waiting, take_turn(of_parties_[rank], name));
   }
   party.turns.erase(one->second.turn);
   party.turns.emplace(turn, one);
@@ -247,10 +249,10 @@ void StrangerQueue::give_up(const Stranger& stranger) {
   const auto party = one.party;
   const int64_t turn = one.turn;
   stop_waiting(stranger);
-  if (rank_of(one) != Rank::other || !one.waiting.empty()) return;
-  const std::string& name = party->first.second;
-  if (name != stranger.of->first) keep(of_neighbourhoods_, stranger.of->first, turn);
-  if (party->second.turns.empty()) keep(of_parties_, name, party->second.turn);
+  if (!one.waiting.empty() || turn < 0) return;
+  const auto& [rank, name] = party->first;
+  if (name != stranger.of->first) keep(of_neighbourhoods_[rank], stranger.of->first, turn);
+  if (party->second.turns.empty()) keep(of_parties_[rank], name, party->second.turn);
 }
 
 void StrangerQueue::keep(KeptTurns& kept, const std::string& whose, int64_t turn) const {

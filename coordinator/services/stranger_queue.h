@@ -79,7 +79,8 @@ class StrangerQueue {
  private:
   enum class Rank { own, trusted, other };
   struct Party;
-  using Parties = std::map<std::pair<Rank, std::string>, Party>;
+  using PartyOf = std::pair<Rank, std::string>;
+  using Parties = std::map<PartyOf, Party>;
   struct Neighbourhood {
     size_t inside = 0;
     std::list<Id> waiting{};  ///< in the order in which they came
@@ -130,8 +131,8 @@ class StrangerQueue {
   std::optional<Next> next_of(Rank rank) const;
   std::optional<Next> next() const;
 
-  const std::string* best_token_of(const std::string& neighbourhood) const;
-  void join(Neighbourhoods::iterator one, Rank rank, const std::string& party);
+  void join(Neighbourhoods::iterator one, const PartyOf& party);
+  void join_best_token(Neighbourhoods::iterator one);
   void part(Neighbourhoods::iterator one);
   void stand_in_line(Neighbourhoods::iterator one, int64_t turn);
   void leave_line(Neighbourhoods::iterator one);
@@ -152,8 +153,9 @@ class StrangerQueue {
   std::map<Rank, Turns> turns_;
   size_t trusted_inside_ = 0;
   TrustedNeighbours trusted_;
-  KeptTurns of_parties_;         ///< of those of which nobody is known
-  KeptTurns of_neighbourhoods_;  ///< within groups, whose many addresses take no party's room
+  /// Apart, so that strangers take no room of others, nor many addresses that of parties.
+  std::map<Rank, KeptTurns> of_parties_;
+  std::map<Rank, KeptTurns> of_neighbourhoods_;  ///< within their parties
   Time kept_since_{};
   std::map<std::pair<size_t, int64_t>, Parties::iterator>
       by_number_;  ///< by how many wait, and turn

@@ -247,7 +247,6 @@ TEST(StrangerQueue, NeighbourhoodsOfOneTokenHaveOneTurn) {
   EXPECT_EQ(queue.expel(kBegin + 2s).size(), 24U);
   const Ids in = let_in_all(queue, kBegin + 2s);
   ASSERT_EQ(in.size(), 24U);
-  EXPECT_EQ(std::set(in.begin(), in.begin() + 3).size(), 3U);
   EXPECT_EQ(std::count(in.begin(), in.begin() + 3, ada), 1);
   EXPECT_EQ(std::count(in.begin(), in.begin() + 10, newcomer), 1) << "eight are kept";
 }
@@ -395,6 +394,58 @@ TEST(StrangerQueue, AnotherTokenTakesNoTurn) {
   queue.expel(kBegin + 2s);
   const Ids in = let_in_all(queue, kBegin + 2s);
   EXPECT_EQ(std::count(in.begin(), in.begin() + 2, next), 1);
+}
+
+/// However many addresses crowd with the token of one that waits, or each with one of its own.
+TEST(StrangerQueue, WhoHasATokenKeepsHisTurn) {
+  for (const bool each : {false, true}) {
+    StrangerQueue queue({});
+    StrangerQueue::Id next = 1;
+    const auto known = [&](const std::string& from) {
+      queue.come(next, from);
+      ASSERT_EQ(let_in_all(queue), Ids{next});
+      queue.know(next++, each ? "that of " + from : "the farm's", kBegin);
+    };
+    known("honest");
+    for (int i = 0; i < 400; ++i) known("crowd " + std::to_string(i));
+    Crowd crowd(queue, 400, "crowd");
+    let_in_all(queue, kBegin);
+    EXPECT_LE(time_to_come_in(queue, crowd, "honest", ""), 80s) << each;
+  }
+}
+
+/// A token that is shown from everywhere only after another of the place was: once it has its turn.
+TEST(StrangerQueue, APlaceBelongsToItsTokenOfFewest) {
+  StrangerQueue queue({});
+  StrangerQueue::Id next = 10;
+  const auto known = [&](const std::string& from, const std::string& token) {
+    queue.come(next, from);
+    ASSERT_EQ(let_in_all(queue), Ids{next});
+    queue.know(next++, token, kBegin);
+  };
+  known("office", "eve's");
+  known("office", "ada's");
+  queue.come(1, "office");  // to eve's: it is the first of two of which nobody is here
+  ASSERT_EQ(let_in_all(queue), Ids{1});
+  for (int i = 0; i < 100; ++i) known("crowd " + std::to_string(i), "eve's");
+  Crowd crowd(queue, 100, "crowd");
+  ASSERT_EQ(let_in_all(queue).size(), 23U);
+  // Its first turn is one of a hundred, and the next is one of two.
+  auto now = kBegin;
+  const auto time_of = [&](StrangerQueue::Id one) {
+    queue.come(one, "office");
+    const auto since = now;
+    for (; now < kBegin + 100s; now += 100ms) {
+      for (const auto id : queue.expel(now)) {
+        if (id >= 1'000'000) crowd.comes_again(id);
+      }
+      const Ids in = let_in_all(queue, now);
+      if (std::count(in.begin(), in.end(), one) > 0) break;
+    }
+    return now - since;
+  };
+  EXPECT_GE(time_of(2), 4s);
+  EXPECT_LE(time_of(3), 2s);
 }
 
 /// Whoever shows one token from everywhere makes nobody else's be forgotten.
