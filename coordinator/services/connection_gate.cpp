@@ -274,6 +274,12 @@ void ConnectionGate::hear(Id id, uint32_t events, Time now) {
   } else if (id < kFirstConnection) {
     accept_from(listening_.sockets[id - kFirstListener], now);
   } else if ((events & (EPOLLHUP | EPOLLRDHUP)) != 0) {
+    // A farm's machines stay for days, and may all come back at once.
+    const auto found = connections_.find(id);
+    if (found != connections_.end() && found->second.known &&
+        !found->second.neighbourhood.empty()) {
+      strangers_.trust(found->second.neighbourhood, found->second.token_id, now);
+    }
     drop(id);  // both sides have ended it, or one who waited has gone
   }
 }
@@ -319,7 +325,10 @@ bool ConnectionGate::may_be_mistaken(const std::string& address) const {
 
 void ConnectionGate::take(core::Descriptor socket, std::string address) {
   if (may_be_mistaken(address)) return;  // a client comes again, from another port
-  Connection connection{.socket = std::move(socket), .address = std::move(address)};
+  const Neighbour neighbour = neighbour_at(address, socket.get());
+  Connection connection{.socket = std::move(socket),
+                        .address = std::move(address),
+                        .neighbourhood = neighbour.is_own_user ? std::string() : neighbour.name};
   if (beginnings_are_kept_) {
     // Else nobody could bound what this one sends; a client comes again.
     const std::optional<uint32_t> beginning = take_beginning(connection.socket);
@@ -330,7 +339,6 @@ void ConnectionGate::take(core::Descriptor socket, std::string address) {
   }
   const Id id = next_id_++;
   if (!watch(poll_, EPOLL_CTL_ADD, connection.socket, EPOLLRDHUP | EPOLLET, id)) return;
-  const Neighbour neighbour = neighbour_at(connection.address, connection.socket.get());
   strangers_.come(id, neighbour.name, neighbour.is_own_user, neighbour.group);
   by_address_[connection.address] = id;  // one before it from there was known, and is ending
   connections_.emplace(id, std::move(connection));

@@ -99,7 +99,8 @@ class ConnectionGate {
   struct Connection {
     core::Descriptor socket;  ///< inside there is another of it, which may be closed before
     std::string address;
-    bool entered = false;  ///< it is inside
+    std::string neighbourhood;  ///< Neighbour::name; empty: it is our own user
+    bool entered = false;       ///< it is inside
     bool known = false;
     std::string token_id{};               ///< by which it became known; empty: none
     std::string machine{};                ///< machine_key() of whose own that was; empty: nobody's

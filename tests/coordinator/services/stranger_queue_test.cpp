@@ -288,6 +288,27 @@ TEST(StrangerQueue, TrustIsForgottenInTime) {
   EXPECT_EQ(let_in_all(queue), Ids{next});
 }
 
+/// One that stays for days is known all that time.
+TEST(StrangerQueue, WhoGoesAfterDaysIsTrusted) {
+  StrangerQueue queue({});
+  StrangerQueue::Id next = 1;
+  const auto known = [&](const std::string& from, StrangerQueue::Time now) {
+    queue.come(next, from);
+    ASSERT_EQ(let_in_all(queue, now), Ids{next});
+    queue.know(next++, "a token", now);
+  };
+  for (const char* name : {"stays", "gone"}) known(name, kBegin);
+  for (int day = 1; day < 4; ++day) known("others", kBegin + day * 25h);
+  const auto now = kBegin + 80h;
+  queue.trust("stays", "a token", now);
+  for (int address = 0; address < 100; ++address) queue.come(next++, std::to_string(address));
+  ASSERT_EQ(let_in_all(queue, now).size(), 16U);
+  queue.come(next, "gone");
+  EXPECT_TRUE(let_in_all(queue, now).empty());
+  queue.come(++next, "stays");
+  EXPECT_EQ(let_in_all(queue, now), Ids{next});
+}
+
 /// A crowd of addresses, of which each has always somebody waiting.
 class Crowd {
  public:
