@@ -33,9 +33,9 @@ def is_expression(value: Any) -> bool:
     return isinstance(value, str) and value.startswith("=")
 
 
-def name(value: str) -> str:
+def checked_name(value: Any) -> str:
     """`value`, where a job may call something so; KeyRefused: it may not. Names become those of files."""
-    if not _NAME.fullmatch(value) or len(value.encode("utf-8", "surrogatepass")) > 100:
+    if not isinstance(value, str) or not _NAME.fullmatch(value) or len(value.encode("utf-8", "surrogatepass")) > 100:
         letters = "letters, digits, _, -, . and inner spaces, beginning with a letter, digit or _"
         raise refuse(f"a name of 1 to 100 bytes: {letters}")
     return value
@@ -200,6 +200,10 @@ class Entries(dict[str, Any]):
     def __setitem__(self, name: str, value: Any) -> None:
         if self._key is not None:
             try:
+                checked_name(name)
+            except KeyRefused as error:
+                raise KeyRefused(f"{self._key.name} has {name!r}, {error}") from None
+            try:
                 map_of_keys(self._key, value)
             except KeyRefused as error:
                 raise KeyRefused(f"{self._key.owner}.{self._key.name}[{name!r}] is {value!r}, {error}") from None
@@ -220,7 +224,7 @@ class Entries(dict[str, Any]):
 
 
 def entries(key: Key, value: Any) -> Any:
-    if isinstance(value, Mapping) and all(isinstance(name, str) for name in value):
+    if isinstance(value, Mapping):
         return Entries(key, value)
     raise refuse("a dict of names")
 

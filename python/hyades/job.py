@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from .checks import are_floats, name
+from .checks import are_floats, checked_name
 from .described import Described, Key
 from .errors import JobError, KeyRefused
 from .files import JobFiles, write_whole
@@ -36,7 +36,7 @@ class Job(JobKeys):
     def __setattr__(self, key: str, value: Any) -> None:
         if key == "name" and isinstance(value, str):
             try:
-                name(value)
+                checked_name(value)
             except KeyRefused as error:
                 raise KeyRefused(f"Job.name is {value!r}, {error}") from None
         super().__setattr__(key, value)
@@ -113,7 +113,7 @@ class Document:
         if isinstance(value, (list, tuple)):
             return value if are_floats(value) else [self._value(key, item) for item in value]
         if isinstance(value, Mapping):
-            return Node((_called(key, entry), self._value(key, item)) for entry, item in value.items())
+            return Node((entry, self._value(key, item)) for entry, item in value.items())
         return value
 
     def _animation(self, value: Keys) -> Node:
@@ -142,16 +142,6 @@ class Document:
             self._added[section][called] = Node()  # before it is written: it may name itself
             self._added[section][called] = self._node(thing)
         return self._names[id(thing)]
-
-
-def _called(key: Key, entry: Any) -> Any:
-    """What an entry of a map is called. KeyRefused: a thing of the job may not be called so."""
-    if key.takes == "entries":
-        try:
-            name(entry)
-        except KeyRefused as error:
-            raise KeyRefused(f"{key.name} has {entry!r}, {error}") from None
-    return entry
 
 
 def _in_order(root: Node) -> Node:

@@ -20,8 +20,10 @@ class Picture:
 
     def __init__(self, array: Array) -> None:
         self.array = numpy.asarray(array)
-        if self.array.ndim not in (2, 3):
+        if self.array.ndim not in (2, 3) or self.array.shape[2:] not in ((), (1,), (2,), (3,), (4,)):
             raise ValueError(f"an array of the shape {self.array.shape} is no picture")
+        if self.array.dtype.kind != "f" and self.array.dtype not in ("uint8", "uint16"):
+            raise ValueError(f"an array of {self.array.dtype} is no picture: expected floats, uint8 or uint16")
 
     @classmethod
     def read(cls, path: str | os.PathLike[str], layer: str = "beauty") -> Picture:
@@ -45,15 +47,19 @@ class Picture:
         return (shown * 255.0 + 0.5).astype(numpy.uint8)
 
     def exposed(self, stops: float) -> Picture:
-        """The same, brighter by so many stops; of light alone."""
+        """The same, brighter by so many stops. ValueError: these are codes, not light."""
+        if self.array.dtype.kind != "f":
+            raise ValueError(f"a picture of {self.array.dtype} has codes of sRGB: expected floats, which are light")
         return Picture(self.array * 2.0**stops)
 
     def save(self, path: str | os.PathLike[str]) -> None:
-        """Writes .png (8 bits, or 16 of uint16) or .exr (float32, or half of float16)."""
+        """Writes .png (8 bits, or 16 of uint16) or, of light, .exr (float32, or half of float16). ValueError: neither."""
         end = Path(path).suffix.lower()
         if end == ".png":
             data = self._repr_png_() if self.array.dtype != numpy.uint16 else encode_png(self.array)
         elif end == ".exr":
+            if self.array.dtype.kind != "f":
+                raise ValueError(f"{os.fspath(path)}: a picture of {self.array.dtype} has codes of sRGB: expected a file .png")
             data = encode_array(self.array)[0]
         else:
             raise ValueError(f"{os.fspath(path)}: expected a file .png or .exr")

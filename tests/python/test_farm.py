@@ -100,6 +100,8 @@ class WholeFarm(unittest.TestCase):
         self.assertEqual((again.name, again.frames), ("again", 2))
         self.assertEqual([job.name for job in self.farm.jobs()], ["again", "forest"])
         self.assertEqual(self.farm.find("forest").frames, 3)
+        with self.assertRaisesRegex(ValueError, "not 'forest'; Farm.find"):
+            self.farm.job("forest")
 
     def test_jobs_are_steered_and_looked_at(self) -> None:
         job = self.farm.submit(scene())

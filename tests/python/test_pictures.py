@@ -53,6 +53,18 @@ class Png(unittest.TestCase):
             self.assertNotIsInstance(caught.exception, MemoryError)
 
 
+class Codes(unittest.TestCase):
+    def test_are_no_light(self) -> None:
+        picture = hyades.Picture(numpy.full((2, 2, 3), 7, "uint8"))
+        with self.assertRaisesRegex(ValueError, "expected floats"):
+            picture.exposed(1)
+        with tempfile.TemporaryDirectory() as folder, self.assertRaisesRegex(ValueError, "expected a file .png"):
+            picture.save(pathlib.Path(folder) / "a.exr")
+        for wrong in (numpy.zeros((2, 2, 5)), numpy.zeros((2, 2), "int64"), numpy.array([["a"]])):
+            with self.assertRaisesRegex(ValueError, "is no picture"):
+                hyades.Picture(wrong)
+
+
 class Exr(unittest.TestCase):
     def test_round_trip(self) -> None:
         light = RANDOM.random((6, 9, 3)).astype("float32") * 100

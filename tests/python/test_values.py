@@ -59,9 +59,10 @@ class Keys(unittest.TestCase):
         for wrong in ("", "../escaped", "bad/name", "-a", ".a", " a", "a ", "a\n", "x" * 101, "ü" * 51):
             with self.assertRaisesRegex(hyades.KeyRefused, "Job.name is .*expected a name of 1 to 100 bytes"):
                 hyades.Job(name=wrong)
-            job = hyades.Job(objects={wrong: hyades.objects.Sphere()})
             with self.assertRaisesRegex(hyades.KeyRefused, "objects has .*expected a name"):
-                job.yaml()
+                hyades.Job(objects={wrong: hyades.objects.Sphere()})
+            with self.assertRaisesRegex(hyades.KeyRefused, "objects has .*expected a name"):
+                hyades.Job().objects[wrong] = hyades.objects.Sphere()
         job = hyades.Job(name="kept")
         with self.assertRaises(hyades.KeyRefused):
             job.name = "bad/name"

@@ -329,7 +329,10 @@ class Farm:
 
 
 def _id(thing: Any) -> int:
-    return int(getattr(thing, "id", thing))
+    number = getattr(thing, "id", thing)
+    if isinstance(number, int) and not isinstance(number, bool):
+        return number
+    raise ValueError(f"expected a job or worker, or its number, not {number!r}; Farm.find() finds jobs by name")
 
 
 def _path(job: JobId, below: str = "") -> str:
