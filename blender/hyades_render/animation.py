@@ -26,6 +26,8 @@ _VIDEOS = {
 }
 """By Blender's format: the output of a job, how its file ends, and its codec as Blender calls it (WEBM is VP9)."""
 _PLAIN_COMPOSITE = {"R_LAYERS", "COMPOSITE", "VIEWER", "SPLITVIEWER", "FRAME", "REROUTE"}
+_NOT_CHOSEN = ("", "/tmp/", "/tmp\\")
+"""Output paths that Blender comes with."""
 _EXR = ("OPEN_EXR", "OPEN_EXR_MULTILAYER")
 
 
@@ -199,10 +201,18 @@ def _after_render(scene: Any) -> list[Complaint]:
     strips = getattr(editor, "strips", None) or getattr(editor, "sequences", ())  # since Blender 4.4, and before
     if render.use_sequencer and len(strips):
         found.append(Complaint("output", "strips of the sequencer are left out: the scene is rendered"))
+    layer = next(layer for layer in scene.view_layers if layer.use)
+    if render.use_freestyle and layer.use_freestyle:
+        found.append(Complaint("output", "the lines of Freestyle are left out"))
+    if render.use_border and not render.use_crop_to_border:
+        words = "pictures have the size of the render region: what Blender leaves black around it is not there"
+        found.append(Complaint("output", words))
     if render.use_stamp:
         found.append(Complaint("output", "nothing is burned into the picture: metadata are left out"))
     if render.use_multiview:
         found.append(Complaint("output", "stereo and multiple views are left out: the camera's own view is rendered"))
+    if not render.use_file_extension:
+        found.append(Complaint("output", "names of files end with their extension"))
     return found
 
 
@@ -257,12 +267,14 @@ def _bits(image: Any) -> int:
 
 
 def _stem(scene: Any, name: str, numbered: bool) -> str:
-    """The name of files without its end: that of the output path, else the job's; `####` stands for the frame."""
+    """The name of files without its end: that of the output path, else the job's; `####` stands for the frame. Where
+    the path names a folder, frames are called by their numbers, as in Blender; but for the one that it comes with."""
     path = scene.render.filepath
     base = "" if path.endswith(("/", "\\")) else Path(bpy.path.abspath(path)).name
     base = re.sub(r"\.(png|jpe?g|tiff?|exr|mp4|mov|webm|mkv|avi)$", "", base, flags=re.IGNORECASE)
     if not numbered:
         return base.replace("#", "") or name
-    if "#" in base:
-        return base
-    return f"{base or name + '.'}####"
+    if "#" in base:  # the last run is the frame's; others stay in Blender, as themselves
+        head, run = re.fullmatch(r"(.*?)(#+[^#]*)", base).groups()
+        return head.replace("#", "_") + run
+    return f"{base or ('' if path not in _NOT_CHOSEN else name + '.')}####"

@@ -51,7 +51,7 @@ def look_at_final(scene: Any, look: Callable[[Any, Any], Any]) -> Any:
 def _plain_render(scene: Any) -> Iterator[str]:
     """The scene with this engine and nothing after it, for a while; the name of a view layer that is rendered."""
     render = scene.render
-    wanted = {"engine": "HYADES", "use_compositing": False, "use_sequencer": False, "use_multiview": False}
+    wanted = {"engine": "HYADES"} | dict.fromkeys(("use_compositing", "use_sequencer", "use_multiview", "use_freestyle"), False)
     before = {name: getattr(render, name) for name in wanted}
     for name, value in wanted.items():
         setattr(render, name, value)

@@ -32,9 +32,8 @@ def print_all(found: Sequence[Any]) -> None:
 
 def tell(reporter: Any, found: Sequence[Any]) -> None:
     """Warns by `reporter.report`; without a window also on standard output, each on a line."""
-    print_all(found)
-    if not found:
-        return
+    if not found or bpy.app.background:
+        return print_all(found)
     lines = [str(one) for one in found[:_MOST_TOLD]]
     if len(found) > _MOST_TOLD:
         lines.append(f"and {len(found) - _MOST_TOLD} more: see Render properties > Not Exported")

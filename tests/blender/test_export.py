@@ -144,13 +144,29 @@ class Copies(ExportTest):
         made.node_tree.links.new(texture.outputs["Color"], shader.inputs[0])
         image = texture.image = bpy.data.images.new("Leaf", 2, 1, alpha=True)
         bpy.data.objects["Cube"].data.materials[0] = made
-        for alpha, mode, kind in ((1, "STRAIGHT", "image"), (0.5, "STRAIGHT", "scale"), (0.5, "CHANNEL_PACKED", "image")):
+
+        def darkest() -> float:
+            return float(self.export()[0].objects["Cube"].material.color.file[..., 0].min())
+
+        for alpha, mode, light in ((1, "STRAIGHT", 1), (0.5, "STRAIGHT", 0.21404), (0.5, "CHANNEL_PACKED", 1)):
             image.pixels, image.alpha_mode = [1, 1, 1, 1, 1, 1, 1, alpha], mode
-            self.assertEqual(self.export()[0].objects["Cube"].material.color.TYPE, kind)
+            self.assertAlmostEqual(darkest(), light, delta=0.003)  # of bytes
         image.alpha_mode = "STRAIGHT"
         transparent = made.node_tree.nodes.new("ShaderNodeBsdfTransparent")
         made.node_tree.links.new(texture.outputs["Alpha"], transparent.inputs[0])
-        self.assertEqual(self.export()[0].objects["Cube"].material.color.TYPE, "image")
+        self.assertEqual(darkest(), 1)
+
+    def test_what_a_job_has_not_is_told(self) -> None:
+        made, shader = self.material("Bright")
+        shader.inputs["Color"].default_value = (1.5, 0.2, 0.2, 1)
+        bpy.data.objects["Cube"].data.materials[0] = made
+        self.scene.camera.scale = (-1, 1, 1)
+        volume = bpy.data.objects.new("Smoke", bpy.data.volumes.new("Smoke"))
+        self.scene.collection.objects.link(volume)
+        said = self.export()[1]
+        self.assertIn("'Color' is held at 1", said)
+        self.assertIn("camera 'Camera': its scale mirrors the picture", said)
+        self.assertIn("object 'Smoke': only volumes of files are supported", said)
 
 
 class Moving(ExportTest):

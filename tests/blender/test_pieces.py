@@ -220,6 +220,8 @@ class Scenes(AddOnTest):
         for path, kind, numbered, expected in (
             ("/tmp/", "PNG", True, "shot.####.png"),
             ("/tmp/", "PNG", False, "shot.png"),
+            ("/out/", "PNG", True, "####.png"),
+            ("/tmp/s##_v##", "PNG", True, "s___v##.png"),
             ("/tmp/a_", "PNG", True, "a_####.png"),
             ("/tmp/a_##", "JPEG", True, "a_##.jpg"),
             ("/tmp/film.mp4", "FFMPEG", True, "film.mp4"),
@@ -234,6 +236,10 @@ class Scenes(AddOnTest):
         render.image_settings.file_format = "TARGA"
         complaints = animation.job_of(self.scene, frames=None, name="shot").complaints
         self.assertIn("output: files of type TARGA are not written; PNG is", [str(one) for one in complaints])
+        render.use_border, render.use_freestyle, render.use_file_extension = True, True, False
+        said = "\n".join(map(str, animation.job_of(self.scene, frames=None, name="shot").complaints))
+        for part in ("size of the render region", "lines of Freestyle", "end with their extension"):
+            self.assertIn(part, said)
 
     def test_a_still_scene_is_told_from_one_that_moves(self) -> None:
         self.assertIsNone(animation.moving_frames(self.scene))

@@ -34,6 +34,8 @@ def translated(context: Context, camera: Any) -> cameras.Camera:
     """An object of type CAMERA as the job's camera."""
     data, where = camera.data, f"camera '{camera.name}'"
     pose = Pose(camera.matrix_world)
+    if camera.matrix_world.is_negative:
+        context.complain(where, "its scale mirrors the picture, which is rendered as it is without")
     placed = {"look_from": pose.place, "look_at": pose.ahead, "up": pose.up}
     if data.type == "PANO":
         kind = panorama_type(context, data)

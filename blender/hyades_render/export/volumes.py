@@ -25,8 +25,11 @@ def add_volume(context: Context, object: Any, matrix: Any) -> None:
     """A Volume object as a box that is filled with what its file says."""
     data, where = object.data, f"object '{object.name}'"
     path = _file(context, data)
+    if not data.filepath:
+        context.complain(where, "only volumes of files are supported, none that modifiers make; it is left out")
+        return
     if path is None:
-        context.complain(where, f"there is no file {data.filepath or '(none)'}, expected .vdb or .nvdb, or a link to one")
+        context.complain(where, f"there is no file {data.filepath}, expected .vdb or .nvdb, or a link to one")
         return
     slot = object.material_slots[0].material if len(object.material_slots) else None
     medium = _medium(context, context.override or slot, path)

@@ -13,6 +13,7 @@ from .nodes import graph, values
 from .nodes.directions import panorama
 from .nodes.graph import Input, Output
 from .nodes.images import image_file
+from .nodes.mappings import own_matrix
 from .nodes.translator import Inexpressible, Translator
 from .nodes.volumes import medium_of
 from .visibility import is_world_seen
@@ -94,6 +95,8 @@ def _picture(translator: Translator, source: Output, strength: float) -> hyades.
 
 def _turn(translator: Translator, source: Output) -> float:
     """By how many degrees the picture is turned counter-clockwise, seen from above."""
+    if own_matrix(source) is not None:
+        raise Inexpressible(source, "a texture's own mapping is no turn")
     end = source.input("Vector")
     found = graph.source(end) if end is not None else None
     if not isinstance(found, Output) or (found.node.type == "TEX_COORD" and found.socket.identifier == "Generated"):

@@ -1,6 +1,8 @@
 """Textures and the nodes that change them, on a board that shines by what they say."""
 
 import math
+import os
+import tempfile
 
 import bpy
 import numpy
@@ -69,9 +71,6 @@ def image_of_floats() -> None:
 
 @scene(samples=64)
 def image_of_a_sequence() -> None:
-    import os
-    import tempfile
-
     folder = tempfile.mkdtemp()
     for number in (1, 2, 3):
         made = bpy.data.images.new(f"One{number}", 8, 8)
@@ -84,6 +83,65 @@ def image_of_a_sequence() -> None:
     texture.image_user.frame_duration, texture.image_user.frame_start = 3, 1
     texture.image_user.use_auto_refresh = True
     bpy.context.scene.frame_set(3)
+
+
+def through(mode: str, kind: str, packed: bool, asked: bool) -> None:
+    """A picture from a file of PNG or OPEN_EXR, whose left half lets 0.6 through, and whether a shader asks for that."""
+    colors = numpy.ones((64, 64, 4), "float32")
+    colors[:] = (0.8, 0.4, 0.5, 1)
+    colors[:32, :, 1] = 0.7
+    colors[:, :32, 3] = 0.4
+    file = bpy.data.images.new("Leaf", 64, 64, alpha=True, float_buffer=kind == "OPEN_EXR")
+    file.pixels.foreach_set(colors.reshape(-1))
+    file.filepath_raw, file.file_format = os.path.join(tempfile.mkdtemp(), "leaf" + {"PNG": ".png"}.get(kind, ".exr")), kind
+    file.save()
+    image = bpy.data.images.load(file.filepath_raw)
+    image.alpha_mode = mode
+    if packed:
+        image.pack()
+    made, texture = board("ShaderNodeTexImage", properties={"image": image, "extension": "EXTEND", "interpolation": "Closest"})
+    if not asked:
+        return
+    both = node(made, "ShaderNodeMixShader")
+    link(made, texture.outputs["Alpha"], both.inputs[0])
+    link(made, node(made, "ShaderNodeBsdfTransparent").outputs[0], both.inputs[1])
+    link(made, shader_of(made).outputs[0], both.inputs[2])
+    link(made, both.outputs[0], made.node_tree.nodes["Material Output"].inputs["Surface"])
+
+
+@scene(samples=64)
+def alpha_of_bytes() -> None:
+    through("STRAIGHT", "PNG", packed=False, asked=False)
+
+
+@scene(samples=64)
+def alpha_of_packed_bytes() -> None:
+    through("PREMUL", "PNG", packed=True, asked=True)
+
+
+@scene(samples=64)
+def alpha_of_light() -> None:
+    through("PREMUL", "OPEN_EXR", packed=False, asked=True)
+
+
+@scene(samples=64)
+def alpha_of_packed_light() -> None:
+    through("STRAIGHT", "OPEN_EXR", packed=True, asked=False)
+
+
+@scene(samples=64)
+def mapping_of_its_own() -> None:
+    _, texture = board("ShaderNodeTexNoise", Scale=3.0)
+    own = texture.texture_mapping
+    own.translation, own.rotation, own.scale = (0.2, 0.1, 0.3), (0.3, 0.2, 0.4), (1.5, 2.0, 1.0)
+    own.mapping_x, own.mapping_y, own.mapping_z = "Z", "X", "Y"
+
+
+@scene(samples=64)
+def mapping_of_a_checker() -> None:
+    _, texture = board("ShaderNodeTexChecker", Scale=3.0)
+    own = texture.texture_mapping
+    own.vector_type, own.translation, own.rotation = "TEXTURE", (0.2, 0.1, 0.0), (0.0, 0.0, 0.4)
 
 
 def projected(projection: str, blend: float = 0.0) -> None:

@@ -17,10 +17,6 @@ _DEEP = 128
 """Depth of paths from which on bodies are about as bright as they are."""
 
 
-def _color(translator: Translator, output: Output, name: str = "Color") -> Any:
-    return held(translator.value(output.input(name)))
-
-
 def _roughness(translator: Translator, output: Output) -> Any:
     if getattr(output.node, "distribution", "") == "SHARP":
         return 0.0
@@ -33,7 +29,7 @@ def _keeps_light(output: Output) -> bool:
 
 @shader("BSDF_DIFFUSE")
 def diffuse(translator: Translator, output: Output) -> Closure:
-    made = materials.Lambert(color=_color(translator, output), **normal_keys(translator, output))
+    made = materials.Lambert(color=translator.color(output.input("Color")), **normal_keys(translator, output))
     roughness = held(translator.number(output.input("Roughness")))
     if not values.is_constant(roughness, 0):
         made.roughness = roughness
@@ -42,13 +38,13 @@ def diffuse(translator: Translator, output: Output) -> Closure:
 
 @shader("BSDF_TRANSLUCENT")
 def translucent(translator: Translator, output: Output) -> Closure:
-    color = _color(translator, output)
+    color = translator.color(output.input("Color"))
     return Closure(materials.DiffuseTransmission(color=0, transmitted=color, **normal_keys(translator, output)))
 
 
 @shader("BSDF_GLOSSY", "BSDF_ANISOTROPIC")
 def glossy(translator: Translator, output: Output) -> Closure:
-    color, roughness = _color(translator, output), _roughness(translator, output)
+    color, roughness = translator.color(output.input("Color")), _roughness(translator, output)
     if not values.is_constant(translator.constant(output.input("Anisotropy"), 0.0), 0):
         translator.complain(output.node, "its highlights are round: anisotropy is left out")
     normals = normal_keys(translator, output)
@@ -91,7 +87,7 @@ def refraction(translator: Translator, output: Output) -> Closure:
 def sheen(translator: Translator, output: Output) -> Closure:
     translator.complain(output.node, "fuzz is that of Estevez and Kulla, another model")
     roughness = translator.number(output.input("Sigma", "Roughness"), 0.5)
-    return Closure(materials.Sheen(color=_color(translator, output), roughness=held(roughness, 0.0, 1.0)))
+    return Closure(materials.Sheen(color=translator.color(output.input("Color")), roughness=held(roughness, 0.0, 1.0)))
 
 
 @shader("SUBSURFACE_SCATTERING")

@@ -9,8 +9,8 @@ from hyades import textures
 
 from .. import axes
 from . import graph
-from .evaluate.vectors import rotation
 from .graph import Output
+from .mappings import matrix_of, own_matrix
 from .translator import Inexpressible, Translator
 from .values import is_texture
 
@@ -32,8 +32,11 @@ def coordinates_of(translator: Translator, output: Output, unlinked: str) -> Coo
     end = output.input("Vector")
     found = graph.source(end) if end is not None else None
     if isinstance(found, Output):
-        return _of_node(translator, found)
-    return _uv(translator, output, "") if unlinked == "uv" else _generated(translator, output)
+        place = _of_node(translator, found)
+    else:
+        place = _uv(translator, output, "") if unlinked == "uv" else _generated(translator, output)
+    own = own_matrix(output)
+    return place if own is None else Coordinates(place.space, own @ place.matrix)
 
 
 def _of_node(translator: Translator, output: Output) -> Coordinates:
@@ -87,9 +90,6 @@ def _generated(translator: Translator, output: Output) -> Coordinates:
 
 
 def _mapped(translator: Translator, output: Output) -> Coordinates:
-    kind = output.node.vector_type
-    if kind == "NORMAL":
-        raise Inexpressible(output, "no mapping of the job means that of normals")
     inner = _of_node(translator, _linked(output))
     parts = []
     for name in ("Scale", "Rotation", "Location"):
@@ -98,18 +98,7 @@ def _mapped(translator: Translator, output: Output) -> Coordinates:
         if is_texture(value):
             raise Inexpressible(output, "the mapping changes from place to place")
         parts.append(numpy.ones(3) * numpy.array(value))
-    scale, angles, location = parts
-    move, turn, stretch = numpy.eye(4), numpy.eye(4), numpy.eye(4)
-    turn[:3, :3] = rotation(angles)
-    stretch[:3, :3] = numpy.diag(scale)
-    if kind != "VECTOR":
-        move[:3, 3] = location
-    matrix = move @ turn @ stretch
-    if kind == "TEXTURE":
-        if not scale.all():
-            raise Inexpressible(output, "a scale of 0 has no inverse")
-        matrix = numpy.linalg.inv(matrix)
-    return Coordinates(inner.space, matrix @ inner.matrix)
+    return Coordinates(inner.space, matrix_of(output, output.node.vector_type, *parts) @ inner.matrix)
 
 
 def _linked(output: Output) -> Output:

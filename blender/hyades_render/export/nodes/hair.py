@@ -39,7 +39,7 @@ def principled_hair(translator: Translator, output: Output) -> Closure:
             translator.complain(output.node, f"all strands are alike: {name} is left out")
     kind = output.node.parametrization
     if kind == "COLOR":
-        made.color = held(translator.value(output.input("Color")))
+        made.color = translator.color(output.input("Color"))
     elif kind == "ABSORPTION":
         made.absorption = held(translator.constant(output.input("Absorption Coefficient")), 0.0, 1e18)
     else:

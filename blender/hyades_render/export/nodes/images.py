@@ -8,8 +8,8 @@ from typing import Any, NamedTuple
 import numpy
 
 from ..files import may_be_sent
-from .evaluate.images import LINEAR, pixels_of
 from .graph import Output
+from .pixels import LINEAR, is_as_in_file, pixels_of
 from .translator import Inexpressible, Translator
 
 _READ = {".png", ".jpg", ".jpeg", ".tif", ".tiff", ".exr", ".hdr", ".tga", ".bmp", ".qoi", ".ppm", ".pgm", ".pfm"}
@@ -53,7 +53,7 @@ def image_file(translator: Translator, node: Any, output: Output) -> ImageFile:
         return ImageFile(path, space, False)
     if image.source not in ("FILE", "GENERATED"):
         raise Inexpressible(output, f"images of source {image.source.lower()} are not supported")
-    if image.is_dirty or image.source == "GENERATED":
+    if image.is_dirty or image.source == "GENERATED" or not is_as_in_file(output, translator.context):
         return ImageFile(_array(translator, output), "linear", False)
     if image.packed_file is not None:
         end = os.path.splitext(path)[1].lower()

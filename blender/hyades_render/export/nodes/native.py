@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from copy import copy
 from typing import Any
 
 import numpy
@@ -11,7 +10,6 @@ from hyades import textures
 from . import values
 from .coordinates import coordinates_of
 from .evaluate.colors import ramp_table
-from .evaluate.images import DARKER, is_darkened
 from .graph import Input, Output
 from .images import image_file
 from .translator import Inexpressible, Translator, native
@@ -52,10 +50,6 @@ def image(translator: Translator, output: Output) -> Value:
         made.filter = "nearest"
     if output.socket.identifier == "Alpha":
         made.channel = "alpha"
-    elif is_darkened(output, translator.context):
-        alpha = copy(made)
-        alpha.channel = "alpha"
-        return values.product(made, textures.Power(input=alpha, exponent=DARKER))
     return made
 
 

@@ -37,7 +37,7 @@ def _said(key: str, value: Value, default: float) -> dict[str, Any]:
 
 
 def _body(translator: Translator, output: Output) -> dict[str, Any]:
-    keys: dict[str, Any] = {"base_color": held(translator.value(output.input("Base Color"), 0.8))}
+    keys: dict[str, Any] = {"base_color": translator.color(output.input("Base Color"), 0.8)}
     keys |= _said("metallic", held(translator.number(output.input("Metallic"))), 0)
     keys |= _said("roughness", held(translator.number(output.input("Roughness"), 0.5)), 0.5)
     keys |= _said("transmission", held(translator.number(output.input("Transmission Weight", "Transmission"))), 0)

@@ -8,6 +8,7 @@ import numpy
 
 from .. import graph
 from ..graph import Input, Output
+from ..mappings import own_matrix
 from ..translator import Inexpressible, default_of
 from .points import Points, Varies  # noqa: F401
 
@@ -62,11 +63,15 @@ class Evaluator:
     color = vector
 
     def place(self, output: Output, uv: bool = False) -> Array:
-        """Input "Vector" of a texture: where it is not linked, generated coordinates, or the active UV map."""
+        """Where a texture looks: input "Vector", or where that is not linked, generated coordinates or the active UV
+        map; moved as its own mapping says."""
         end = output.input("Vector")
         if end is not None and isinstance(graph.source(end), Output):
-            return self.vector(output, "Vector")
-        return with_zero(self.points.uv("")) if uv else self.points.generated()
+            place = self.vector(output, "Vector")
+        else:
+            place = with_zero(self.points.uv("")) if uv else self.points.generated()
+        own = own_matrix(output)
+        return place if own is None else place @ own[:3, :3].T + own[:3, 3]
 
 
 def as_type(value: Array, given: str, wanted: str) -> Array:

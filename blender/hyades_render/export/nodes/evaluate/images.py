@@ -7,59 +7,11 @@ from typing import Any
 import numpy
 
 from ..graph import Output
+from ..pixels import pixels_of
 from ..translator import Inexpressible
 from .evaluator import Evaluator, computes
 
 Array = Any
-LINEAR = {"Linear", "Linear Rec.709", "Non-Color", "Raw", "Generic Data"}
-DARKER = 2.2
-"""Light that a share of an sRGB code is, as an exponent of the share."""
-
-
-def pixels_of(output: Output, context: Any) -> Array:
-    """Linear light (h, w, 4) of a node's image, row 0 at the bottom, straight alpha. Kept for the export.
-    Inexpressible: its file is missing, or no picture."""
-    image = output.node.image
-    key = ("pixels", image.name_full)
-    if key not in context.materials:
-        width, height = image.size
-        if not width * height:
-            raise Inexpressible(output, f"Blender reads no picture from the file {image.filepath}")
-        flat = numpy.empty(width * height * image.channels, "float32")
-        image.pixels.foreach_get(flat)
-        found = flat.reshape(height, width, image.channels).astype("float64")
-        if image.channels < 4:
-            found = numpy.concatenate([found[..., :1]] * (3 if image.channels == 1 else 1) + (
-                [found[..., 1:3]] if image.channels == 3 else []) + [numpy.ones((height, width, 1))], axis=2)
-        # Files of bytes come as their codes.
-        space = image.colorspace_settings.name
-        if not image.is_float and space not in LINEAR:
-            if space != "sRGB":
-                context.complain(f"image '{image.name}'", f"the colour space {space} is read as sRGB")
-            color = found[..., :3]
-            linear = numpy.where(color <= 0.04045, color / 12.92, ((color + 0.055) / 1.055) ** 2.4)
-            found = numpy.concatenate([linear, found[..., 3:4]], axis=2)
-        context.materials[key] = found
-    return context.materials[key]
-
-
-def is_darkened(output: Output, context: Any) -> bool:
-    """Whether the colour of a node is one times its alpha: while nobody asks for alpha, Cycles leaves it in there, of
-    files of bytes in their codes. (Files of floats hold such colours themselves.)"""
-    image = output.node.image
-    alpha = next((socket for socket in output.node.outputs if socket.identifier == "Alpha"), None)
-    if alpha is None or alpha.is_linked or output.socket.identifier == "Alpha":
-        return False
-    if image.source not in ("FILE", "GENERATED"):
-        return False
-    if image.alpha_mode not in ("STRAIGHT", "PREMUL") or image.colorspace_settings.is_data or image.channels < 4 or image.is_float:
-        return False
-    key = ("sees through", image.name_full)
-    if key not in context.materials:
-        flat = numpy.empty(image.size[0] * image.size[1] * 4, "float32")
-        image.pixels.foreach_get(flat)
-        context.materials[key] = bool((flat[3::4] < 1).any())
-    return context.materials[key]
 
 
 def looked_up(pixels: Array, u: Array, v: Array, extension: str, interpolation: str) -> Array:
@@ -149,8 +101,7 @@ def image_texture(at: Evaluator, output: Output) -> Array:
     )
     if output.socket.identifier == "Alpha":
         return found[:, 3]
-    darkened = is_darkened(output, at.translator.context)
-    return found[:, :3] * (found[:, 3:4] ** DARKER if darkened else 1)
+    return found[:, :3]
 
 
 @computes("TEX_ENVIRONMENT")

@@ -7,6 +7,7 @@ from typing import Any
 import numpy
 
 from ..graph import Output
+from ..mappings import rotation
 from ..translator import Inexpressible
 from .evaluator import Evaluator, computes, stacked
 from .maths import OPERATIONS
@@ -75,15 +76,6 @@ def vector_math(at: Evaluator, output: Output) -> Array:
     if kind == "FACEFORWARD":
         return numpy.where((dot(c, b) < 0)[..., None], a, -a)
     raise Inexpressible(output, f"the operation {kind.lower()} is not supported")
-
-
-def rotation(angles: Array) -> Array:
-    """Matrix (3, 3) of turns about x, then y, then z [radians]."""
-    (sx, sy, sz), (cx, cy, cz) = numpy.sin(angles), numpy.cos(angles)
-    about_x = numpy.array([[1, 0, 0], [0, cx, -sx], [0, sx, cx]])
-    about_y = numpy.array([[cy, 0, sy], [0, 1, 0], [-sy, 0, cy]])
-    about_z = numpy.array([[cz, -sz, 0], [sz, cz, 0], [0, 0, 1]])
-    return about_z @ about_y @ about_x
 
 
 @computes("MAPPING")

@@ -1,0 +1,106 @@
+"""Pixels of Blender's images as Cycles sees them.
+
+Where a colour space is none of plain numbers, Cycles keeps colours times alpha: it multiplies those of files that have
+them apart (all but EXR), bytes in their codes, and divides them again where a node's alpha is asked for. What Blender
+keeps itself (packed, generated) it takes as Blender holds it: bytes apart, floats times alpha, by what the image says
+that its file is.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy
+
+from .graph import Output
+from .translator import Inexpressible
+
+Array = Any
+LINEAR = {"Linear", "Linear Rec.709", "Non-Color", "Raw", "Generic Data"}
+
+
+def pixels_of(output: Output, context: Any) -> Array:
+    """Linear light (h, w, 4) of a node's image, row 0 at the bottom, with alpha. Kept for the export. Inexpressible:
+    its file is missing, or no picture."""
+    image = output.node.image
+    key = ("pixels", image.name_full, _asks_for_alpha(output))
+    if key not in context.materials:
+        found = _kept(output)
+        color, alpha = found[..., :3], found[..., 3:4]
+        if _has_alpha(image):
+            color = color * _times_alpha(output, alpha)
+        if not image.is_float:
+            color = _decoded(image, color, context)
+        context.materials[key] = numpy.concatenate([color, alpha], axis=2)
+    return context.materials[key]
+
+
+def is_as_in_file(output: Output, context: Any) -> bool:
+    """Whether Cycles sees the colours that the node's image has in its file."""
+    image = output.node.image
+    if image.source != "FILE" or not _has_alpha(image):
+        return True
+    key = ("sees through", image.name_full)
+    if key not in context.materials:
+        context.materials[key] = bool((_kept(output)[..., 3] < 1).any())
+    if not context.materials[key]:
+        return True
+    other = "STRAIGHT" if _is_exr(image) else "PREMUL"
+    same = _asks_for_alpha(output) != _is_exr(image)
+    return same and not (_is_kept_by_blender(image) and image.alpha_mode == other)
+
+
+def _kept(output: Output) -> Array:
+    """What Blender holds (h, w, 4): of files of bytes their codes."""
+    image = output.node.image
+    width, height = image.size
+    if not width * height:
+        raise Inexpressible(output, f"Blender reads no picture from the file {image.filepath}")
+    flat = numpy.empty(width * height * image.channels, "float32")
+    image.pixels.foreach_get(flat)
+    found = flat.reshape(height, width, image.channels).astype("float64")
+    if image.channels == 4:
+        return found
+    color = found if image.channels == 3 else numpy.repeat(found[..., :1], 3, axis=2)
+    return numpy.concatenate([color, numpy.ones((height, width, 1))], axis=2)
+
+
+def _decoded(image: Any, codes: Array, context: Any) -> Array:
+    space = image.colorspace_settings.name
+    if space in LINEAR:
+        return codes
+    if space != "sRGB":
+        context.complain(f"image '{image.name}'", f"the colour space {space} is read as sRGB")
+    return numpy.where(codes <= 0.04045, codes / 12.92, (numpy.maximum(codes + 0.055, 0) / 1.055) ** 2.4)
+
+
+def _times_alpha(output: Output, alpha: Array) -> Array:
+    """What makes of colours that Blender holds those that Cycles sees."""
+    image = output.node.image
+    power = 0
+    if not _is_kept_by_blender(image):  # back to what the file says, and what Cycles makes of that
+        if image.is_float:
+            power += {"STRAIGHT": -1, "PREMUL": 0}[image.alpha_mode] + (0 if _is_exr(image) else 1)
+        else:
+            power += {"STRAIGHT": 0, "PREMUL": 1}[image.alpha_mode]
+    power += -1 if image.is_float and _asks_for_alpha(output) else 0
+    power += 1 if not image.is_float and not _asks_for_alpha(output) else 0
+    return numpy.where(alpha > 0, numpy.maximum(alpha, 1e-20) ** power, 1 if power <= 0 else 0)
+
+
+def _has_alpha(image: Any) -> bool:
+    """Whether alpha has to do with colours."""
+    is_of_colors = image.alpha_mode in ("STRAIGHT", "PREMUL") and not image.colorspace_settings.is_data
+    return is_of_colors and image.channels == 4
+
+
+def _asks_for_alpha(output: Output) -> bool:
+    return any(socket.identifier == "Alpha" and socket.is_linked for socket in output.node.outputs)
+
+
+def _is_kept_by_blender(image: Any) -> bool:
+    return image.packed_file is not None or image.source == "GENERATED" or image.is_dirty
+
+
+def _is_exr(image: Any) -> bool:
+    return image.file_format in ("OPEN_EXR", "OPEN_EXR_MULTILAYER")
