@@ -57,7 +57,8 @@ std::string in_our_words(const CLI::App& app, const CLI::ParseError& error) {
       }
     }
     const std::string name = extra.substr(0, extra.find('='));
-    // What begins one is nearer to it than what is spelled alike: --prio is --priority.
+    // What begins one, by two letters at least, is nearer to it than what is spelled alike: --prio
+    // is --priority.
     std::vector<std::string> longer;
     std::copy_if(options.begin(), options.end(), std::back_inserter(longer),
                  [&](const std::string& one) { return name.size() > 3 && one.starts_with(name); });

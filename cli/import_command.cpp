@@ -25,7 +25,7 @@ int import_command(int argc, char** argv) {
       "hyades import");
   core::WriteSceneJob request;
   app.add_option("scene", request.scene,
-                 "the scene, mesh or script (.glb, .gltf, .pbrt, .obj, .ply, .lua)")
+                 "the scene, mesh or script (" + core::scene_file_ends() + ")")
       ->required();
   app.add_option("-o,--output", request.job, "the job to be written (default: SCENE.yaml, here)");
   app.add_option("--media", request.media,
@@ -52,9 +52,9 @@ int import_command(int argc, char** argv) {
       "exit status: 0 written, 2 not");
   if (const auto status = parse_command_line(app, argc, argv, kBadInput)) return *status;
   if (!core::is_scene_file(request.scene)) {
-    std::fprintf(
-        stderr, "%s: expected a scene, mesh or script (.glb, .gltf, .pbrt, .obj, .ply, .lua)%s\n",
-        core::printable(request.scene).c_str(), core::hint_for_scene_file(request.scene).c_str());
+    print_error(core::Error{"expected a scene, mesh or script (" + core::scene_file_ends() + ")" +
+                            core::hint_for_scene_file(request.scene)}
+                    .in(request.scene));
     return kBadInput;
   }
   if (request.job.empty()) {

@@ -8,7 +8,6 @@
 #include "cli/frame_range.h"
 #include "cli/number_range.h"
 #include "core/job/parse.h"
-#include "core/job/scene_document.h"
 
 namespace hyades::cli {
 
@@ -17,14 +16,6 @@ using core::Diagnostics;
 std::optional<LoadedJob> read_job_file(const std::string& path, Diagnostics& diagnostics,
                                        const SceneOptions& scene) {
   LoadedJob loaded;
-  if (const std::string hint = core::hint_for_scene_file(path); !hint.empty()) {
-    print_error(
-        core::Error{"expected a job (.yaml), or a scene, mesh or script (.glb, .gltf, .pbrt, "
-                    ".obj, .ply, .lua)" +
-                    hint}
-            .in(path));
-    return std::nullopt;
-  }
   if (is_blend_file(path)) {
     auto made = BlendJob::make(path, scene.frames);
     if (!made) {

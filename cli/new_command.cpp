@@ -14,13 +14,14 @@
 #include "core/base/printable.h"
 #include "core/base/text.h"
 #include "core/job/output_path.h"
+#include "core/job/read_values.h"
 
 namespace hyades::cli {
 namespace {
 
-/// NAME, MARKS (for the frame's number, or nothing), FRAMES and TURN are filled in.
+/// COMMAND, NAME, MARKS (for the frame's number, or nothing), FRAMES and TURN are filled in.
 constexpr std::string_view kJob =
-    R"yaml(# 'hyades render NAME.yaml' renders it; 'hyades check NAME.yaml' tells what is wrong in it, and what it costs.
+    R"yaml(# COMMAND renders it; 'hyades check' tells what is wrong in it, and what it costs.
 # docs/job.md describes every key. Lengths are metres, y is up, colours are linear [r, g, b], "#d8c8a8" or 3200K.
 hyades: 1
 name: NAME
@@ -70,7 +71,13 @@ std::string replaced(std::string text, std::string_view what, std::string_view w
   return text;
 }
 
-std::string job_called(const std::string& name, bool animated) {
+/// The command that renders a file, as it is typed.
+std::string render_of(const std::string& file) {
+  return "hyades render " +
+         core::printable(core::shell_word(file.front() == '-' ? "./" + file : file));
+}
+
+std::string job_of(const std::filesystem::path& file, bool animated) {
   std::string text(kJob);
   if (animated) text += kVideo;
   text = replaced(text, "FRAMES",
@@ -78,19 +85,8 @@ std::string job_called(const std::string& name, bool animated) {
                            : "# frames: {range: 1-48, fps: 24}  # of an animation");
   text = replaced(text, "TURN", animated ? "\"= 45 * t\"" : "30");
   text = replaced(text, "MARKS", animated ? ".####" : "");
-  return replaced(text, "NAME", name);
-}
-
-/// What outputs may be called so, nearly as the file is: letters, digits, '-', '_' and '.'.
-std::string plain_name(const std::string& stem) {
-  std::string name;
-  for (const char c : stem) {
-    const bool is_plain = core::is_letter_or_digit(c) || c == '_' || (!name.empty() && c == '.');
-    if (is_plain) name += c;
-    if (!is_plain && !name.empty() && !name.ends_with('-')) name += '-';
-  }
-  while (name.ends_with('-')) name.pop_back();
-  return name.empty() ? "picture" : name;
+  text = replaced(text, "NAME", core::valid_name(file.stem().string()));
+  return replaced(text, "COMMAND", render_of(file.filename().string()));
 }
 
 }  // namespace
@@ -109,7 +105,6 @@ int new_command(int argc, char** argv) {
       "  hyades new turn.yaml --animated\n"
       "exit status: 0 written, 1 it could not be, 2 the arguments are wrong, or the file is there");
   if (const auto status = parse_command_line(app, argc, argv)) return *status;
-  const std::string name = plain_name(std::filesystem::path(file).stem().string());
   const std::string extension = core::file_extension(file);
   if (extension != ".yaml" && extension != ".yml") {
     std::fprintf(stderr, "hyades new: %s: expected NAME.yaml\n", core::printable(file).c_str());
@@ -119,12 +114,12 @@ int new_command(int argc, char** argv) {
     print_error(may.error().in("hyades new"));
     return kExitRefused;
   }
-  const std::string text = job_called(name, animated);
+  const std::string text = job_of(file, animated);
   if (const auto done = core::write_file(file, std::as_bytes(std::span(text))); !done) {
     print_error(done.error().in("hyades new"));
     return 1;
   }
-  written.tell(file + ": 'hyades render " + file + " --preview' shows it");
+  written.tell(file + ": " + render_of(file) + " --preview shows it");
   return 0;
 }
 

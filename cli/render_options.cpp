@@ -81,10 +81,7 @@ struct Words {
 };
 
 void declare_what(CLI::App& app, RenderOptions& options, Words& words) {
-  app.add_option("job", options.path,
-                 "the job (.yaml), or a scene, mesh or script (.glb, .gltf, .pbrt, .obj, .ply, "
-                 ".lua, and .blend where Blender is installed)")
-      ->required();
+  app.add_option("job", options.path, job_words())->required();
   app.add_option("--frames", options.frames,
                  "frames to render: 7, 1-10 or 1-10x2 (default: all; at most a million)")
       ->check(no_frames_error)

@@ -6,6 +6,7 @@
 #include <CLI/CLI.hpp>
 
 #include "core/base/printable.h"
+#include "core/job/scene_document.h"
 #include "core/job/script_include.h"
 
 namespace hyades::cli {
@@ -24,6 +25,11 @@ std::string wrong_set(const std::string& text) {
 }
 
 }  // namespace
+
+std::string job_words() {
+  return "the job (.yaml), or a scene, mesh or script (" + core::scene_file_ends() +
+         ", and .blend where Blender is installed)";
+}
 
 void declare_set_option(CLI::App& app, std::vector<std::string>& set) {
   app.add_option("--set", set,

@@ -22,6 +22,9 @@ struct SceneOptions {
   std::string frames;  ///< of a .blend: those that are wanted; empty: all. No option here
 };
 
+/// What commands take as their job, for their help.
+std::string job_words();
+
 /// Options --media, --animation, --loop, --missing-textures, --follow-links and --set.
 void declare_scene_options(CLI::App& app, SceneOptions& options);
 

@@ -11,6 +11,7 @@
 #include "core/job/scene_document.h"
 #include "core/job/yaml_writer.h"
 #include "import/scene_job.h"
+#include "import/stand_in.h"
 
 namespace hyades::core {
 
@@ -43,8 +44,12 @@ class BytesStream : private std::streambuf, public std::istream {
   Bytes bytes_;
 };
 
-/// Whether the options are for what the file is.
+/// Whether the file is a job or scene by its name, and the options are for what it is.
 Status check_options(const std::string& path, const JobFileOptions& options) {
+  if (const std::string hint = hint_for_scene_file(path); !hint.empty() || names_picture(path)) {
+    return Error{path + ": expected a job (.yaml), or a scene, mesh or script (.blend, " +
+                 scene_file_ends() + ")" + hint};
+  }
   const bool tells_all = is_script_file(path) || !is_scene_file(path);
   if (!options.media.empty() && tells_all) {
     return Error{path +

@@ -4,6 +4,7 @@
 #include <string_view>
 
 #include "core/job/output_path.h"
+#include "core/job/scene_document.h"
 #include "import/gltf/read_gltf.h"
 #include "import/lua/read_script.h"
 #include "import/obj/read_obj_scene.h"
@@ -44,8 +45,8 @@ Result<std::shared_ptr<const SceneSource>> read_scene(AssetResolver& files,
     return row.read(files, reference);
   }
   return Error{reference +
-               ": no scene or mesh that is known by its name; expected one that ends in "
-               ".gltf, .glb, .pbrt, .obj, .ply or .lua"};
+               ": no scene or mesh that is known by its name; expected one that ends in one of " +
+               scene_file_ends()};
 }
 
 }  // namespace hyades::core

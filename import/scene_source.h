@@ -66,7 +66,7 @@ class SceneSource {
 };
 
 /// Reads a scene file: `reference` through `files`, and what it names in its turn. Told apart by
-/// its name: .gltf, .glb, .pbrt, .obj, .ply, .lua. Errors name the file and the place. `files` must
+/// its name: is_scene_file(). Errors name the file and the place. `files` must
 /// outlive what is returned.
 Result<std::shared_ptr<const SceneSource>> read_scene(AssetResolver& files,
                                                       const std::string& reference);

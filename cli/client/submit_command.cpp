@@ -63,10 +63,7 @@ struct SubmitOptions {
 };
 
 void declare_submit(CLI::App& app, SubmitOptions& options) {
-  app.add_option("job", options.path,
-                 "the job (.yaml), or a scene, mesh or script (.glb, .gltf, .pbrt, .obj, .ply, "
-                 ".lua, and .blend where Blender is installed)")
-      ->required();
+  app.add_option("job", options.path, job_words())->required();
   app.add_flag("--watch", options.watch, "stay and show progress until the job has ended");
   app.add_option("--priority", options.priority, "higher goes first")
       ->check(in_range(-1'000'000, 1'000'000))

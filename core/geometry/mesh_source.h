@@ -44,7 +44,8 @@ void drop_unused_vertices(TriangleMesh& mesh);
 Status complete_mesh(TriangleMesh& mesh);
 
 /// The complaint about a file that is of no format known here.
-inline constexpr const char* kNoMesh = "it is no mesh file that is known; expected OBJ or PLY";
+inline constexpr const char* kNoMesh =
+    "it is no mesh file that is known; expected OBJ or PLY, which Blender makes of others";
 
 /// Readers of one format each, from the bytes of a whole file. Errors do not name the file.
 Result<std::shared_ptr<TriangleMesh>> read_ply(std::span<const char> bytes);

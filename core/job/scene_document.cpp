@@ -1,6 +1,7 @@
 #include "core/job/scene_document.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
@@ -17,8 +18,8 @@ namespace hyades::core {
 namespace {
 
 constexpr std::string_view kScript = ".lua";
-constexpr std::array<std::string_view, 6> kExtensions = {".gltf", ".glb", ".pbrt",
-                                                         ".obj",  ".ply", kScript};
+constexpr std::array<std::string_view, 6> kExtensions = {".glb", ".gltf", ".pbrt",
+                                                         ".obj", ".ply",  kScript};
 constexpr std::string_view kSetting = "set.";
 constexpr size_t kLongestSetting = 64;
 constexpr std::string_view kName = "scene";
@@ -110,11 +111,14 @@ bool is_scene_file(std::string_view name) {
   return std::find(kExtensions.begin(), kExtensions.end(), extension) != kExtensions.end();
 }
 
+std::string scene_file_ends() { return fmt::format("{}", fmt::join(kExtensions, ", ")); }
+
 std::string hint_for_scene_file(std::string_view name) {
-  constexpr std::array<std::string_view, 8> kBlenders = {".fbx", ".dae",  ".abc",  ".stl",
-                                                         ".usd", ".usda", ".usdc", ".usdz"};
+  constexpr std::array<std::string_view, 8> kOnlyBlenders = {".fbx", ".dae",  ".abc",  ".stl",
+                                                             ".usd", ".usda", ".usdc", ".usdz"};
   const std::string extension = file_extension(std::string(name));
-  const bool known = std::find(kBlenders.begin(), kBlenders.end(), extension) != kBlenders.end();
+  const bool known =
+      std::find(kOnlyBlenders.begin(), kOnlyBlenders.end(), extension) != kOnlyBlenders.end();
   return known ? ": Blender opens it, and writes .glb" : "";
 }
 

@@ -28,9 +28,11 @@ struct SceneDocument {
 /// Added to a scene file's name: the folder of what is made of it.
 inline constexpr std::string_view kMadeFolder = ".files";
 
-/// Whether a file's name is that of a scene (or mesh) that importers read: .gltf, .glb, .pbrt,
-/// .obj, .ply or .lua.
+/// Whether a file's name is that of a scene, mesh or script that importers read.
 bool is_scene_file(std::string_view name);
+
+/// The ends of their names: ".glb, .gltf, .pbrt, .obj, .ply, .lua".
+std::string scene_file_ends();
 
 /// What can be done with a scene file of other tools that importers do not read, such as a .fbx:
 /// ": Blender opens it, and writes .glb"; empty of any other name.

@@ -13,6 +13,7 @@
 #include "core/job/key_index.h"
 #include "core/job/output_path.h"
 #include "core/job/read_values.h"
+#include "core/job/scene_document.h"
 
 namespace hyades::core {
 
@@ -136,7 +137,8 @@ class Expander {
     if (file.value->kind != Kind::scalar || !has_extension(file.value->scalar, row)) {
       diagnostics_.add(file.value->where, std::string(row.key) + " is " + describe(*file.value) +
                                               ", expected a file whose name ends in " +
-                                              row.extensions[0]);
+                                              row.extensions[0] +
+                                              hint_for_scene_file(file.value->scalar));
       return std::nullopt;
     }
     SceneDocument wanted;

@@ -23,6 +23,7 @@ TEST(Complaints, WordsOfOtherRenderersAreKnown) {
   };
   says("materials: {m: {type: metal}}\n", "or black, did you mean 'conductor'?");
   says("environment: {file: sky.exr}\n", "'file' in environment, did you mean 'image'?");
+  says("environment: {texture: sky.exr}\n", "'texture' in environment, did you mean 'image'?");
   says("sampling: {integrator: bdpt}\n", "it is the job's own: 'integrator: path' beside");
   says("materials: {m: {type: principled, color: 1}}\n", ", did you mean 'base_color'?");
   says("materials: {m: {type: principled, metal: 1}}\n", ", did you mean 'metallic'?");
