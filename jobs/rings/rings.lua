@@ -43,8 +43,8 @@ return {
   },
   objects = objects,
   lights = {
-    beam = {type = "spot", at = {-8.9, 8.5, -10.3}, look_at = center, angle = 8.2, blend = 0.1, power = 44000, color = "3600K"},
-    sky = {type = "point", at = {3.5, 5, 6}, power = 90, color = {0.4, 0.6, 1}},
+    beam = {type = "spot", at = {-10.4, 9.55, -12.05}, look_at = center, angle = 7.1, blend = 0.1, power = 46000, color = "3600K"},
+    sky = {type = "point", at = {3.5, 5, 6}, power = 60, color = {0.4, 0.6, 1}},
   },
-  outputs = {{file = "rings.exr"}, {file = "rings.png", tone_map = "filmic", exposure = 1.2}},
+  outputs = {{file = "rings.exr"}, {file = "rings.png", tone_map = "filmic", exposure = 1}},
 }

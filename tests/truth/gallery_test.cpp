@@ -51,7 +51,7 @@ const GalleryJob kJobs[] = {{"quickstart", 320, 144, 10, 0.1},
                             {"god-rays", 224, 112, 10, 0.1},
                             // Of the low sun that the water mirrors, deep paths are rare and bright.
                             {"cloud", 320, 160, 12, 0.15},
-                            {"sky-shell", 320, 160, 10, 0.12}};
+                            {"sky-shell", 320, 160, 10, 0.1}};
 
 YamlScene small(const GalleryJob& job, const std::string& integrator, int samples) {
   const std::string folder = std::string("jobs/") + job.name;
