@@ -25,7 +25,7 @@ def pixels_of(output: Output, context: Any) -> Array:
     image = output.node.image
     key = ("pixels", image.name_full, _asks_for_alpha(output))
     if key not in context.materials:
-        found = _kept(output)
+        found = _kept(output).astype("float64")
         color, alpha = found[..., :3], found[..., 3:4]
         if _has_alpha(image):
             color = color * _times_alpha(output, alpha)
@@ -40,29 +40,28 @@ def is_as_in_file(output: Output, context: Any) -> bool:
     image = output.node.image
     if image.source != "FILE" or not _has_alpha(image):
         return True
-    key = ("sees through", image.name_full)
-    if key not in context.materials:
-        context.materials[key] = bool((_kept(output)[..., 3] < 1).any())
-    if not context.materials[key]:
-        return True
     other = "STRAIGHT" if _is_exr(image) else "PREMUL"
-    same = _asks_for_alpha(output) != _is_exr(image)
-    return same and not (_is_kept_by_blender(image) and image.alpha_mode == other)
+    if _asks_for_alpha(output) != _is_exr(image) and not (_is_kept_by_blender(image) and image.alpha_mode == other):
+        return True
+    key = ("opaque", image.name_full)
+    if key not in context.materials:
+        context.materials[key] = bool((_kept(output)[..., 3] == 1).all())
+    return context.materials[key]
 
 
 def _kept(output: Output) -> Array:
-    """What Blender holds (h, w, 4): of files of bytes their codes."""
+    """What Blender holds (h, w, 4), float32: of files of bytes their codes."""
     image = output.node.image
     width, height = image.size
     if not width * height:
         raise Inexpressible(output, f"Blender reads no picture from the file {image.filepath}")
     flat = numpy.empty(width * height * image.channels, "float32")
     image.pixels.foreach_get(flat)
-    found = flat.reshape(height, width, image.channels).astype("float64")
+    found = flat.reshape(height, width, image.channels)
     if image.channels == 4:
         return found
     color = found if image.channels == 3 else numpy.repeat(found[..., :1], 3, axis=2)
-    return numpy.concatenate([color, numpy.ones((height, width, 1))], axis=2)
+    return numpy.concatenate([color, numpy.ones((height, width, 1), "float32")], axis=2)
 
 
 def _decoded(image: Any, codes: Array, context: Any) -> Array:
@@ -91,7 +90,7 @@ def _times_alpha(output: Output, alpha: Array) -> Array:
 def _has_alpha(image: Any) -> bool:
     """Whether alpha has to do with colours."""
     is_of_colors = image.alpha_mode in ("STRAIGHT", "PREMUL") and not image.colorspace_settings.is_data
-    return is_of_colors and image.channels == 4
+    return is_of_colors and image.channels == 4 and image.depth not in (24, 96)  # bits of those without
 
 
 def _asks_for_alpha(output: Output) -> bool:
