@@ -20,12 +20,12 @@ LINEAR = {"Linear", "Linear Rec.709", "Non-Color", "Raw", "Generic Data"}
 
 
 def pixels_of(output: Output, context: Any) -> Array:
-    """Linear light (h, w, 4) of a node's image, row 0 at the bottom, with alpha. Kept for the export. Inexpressible:
-    its file is missing, or no picture."""
+    """Linear light (h, w, 4), float32, of a node's image, row 0 at the bottom, with alpha. Kept for the export.
+    Inexpressible: its file is missing, or no picture."""
     image = output.node.image
     key = ("pixels", image.name_full, _asks_for_alpha(output))
     if key not in context.materials:
-        found = _kept(output).astype("float64")
+        found = _kept(output)
         color, alpha = found[..., :3], found[..., 3:4]
         if _has_alpha(image):
             color = color * _times_alpha(output, alpha)
@@ -50,7 +50,7 @@ def is_as_in_file(output: Output, context: Any) -> bool:
 
 
 def _kept(output: Output) -> Array:
-    """What Blender holds (h, w, 4), float32: of files of bytes their codes."""
+    """What Blender holds (h, w, 4): of files of bytes their codes."""
     image = output.node.image
     width, height = image.size
     if not width * height:
