@@ -1,5 +1,6 @@
 #include "coordinator/access/trusted_neighbours.h"
 
+#include <algorithm>
 #include <utility>
 
 namespace hyades::coordinator {
@@ -22,7 +23,14 @@ void TrustedNeighbours::trust(const std::string& neighbourhood, const std::strin
   std::vector<std::string>& shown = tokens_of_[neighbourhood];
   std::erase(shown, token_id);
   shown.push_back(token_id);
-  if (shown.size() > kMostTokensOfOne) shown.erase(shown.begin());
+  if (shown.size() <= kMostTokensOfOne) return;
+  const auto places_of = [&](const std::string& token) {
+    const OfToken& of = tokens_.at(token);
+    return of.now.size() + of.before.size();
+  };
+  shown.erase(std::max_element(shown.begin(), shown.end(), [&](const auto& a, const auto& b) {
+    return places_of(a) < places_of(b);
+  }));
 }
 
 const std::vector<std::string>& TrustedNeighbours::tokens_of(

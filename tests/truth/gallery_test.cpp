@@ -28,30 +28,31 @@ void PrintTo(const GalleryJob& job, std::ostream* out) { *out << job.name; }
 
 constexpr int kRuns = 12;
 
-const GalleryJob kJobs[] = {{"quickstart", 320, 144, 10, 0.1},
-                            {"cornell", 128, 64, 10, 0.05},
-                            {"color-bleeding", 160, 80, 10, 0.015},
-                            {"soft-shadows", 576, 288, 6, 0.2},
-                            {"depth-of-field", 512, 320, 10, 0.15},
-                            {"antialiasing", 64, 32, 10, 0.025},
-                            {"perlin-sphere", 256, 128, 10, 0.1},
-                            {"mesh-100k", 128, 64, 10, 0.015},
-                            {"glass-caustics", 2400, 600, 10, 0.06},
-                            {"gloss", 128, 64, 10, 0.06},
-                            {"textured", 64, 32, 10, 0.1},
-                            {"textured-gloss", 320, 160, 10, 0.12},
-                            {"leaves", 96, 48, 10, 0.03},
-                            {"island", 64, 32, 8, 0.015},
-                            {"lanterns", 64, 32, 6, 0.1},
-                            {"panorama", 192, 96, 6, 0.1},
-                            {"stained-glass", 640, 320, 8, 0.15},
-                            {"metropolis", 800, 400, 8, 0.12},
-                            {"materials", 480, 240, 64, 0.1},
-                            {"media", 64, 32, 64, 0.1},
-                            {"god-rays", 224, 112, 10, 0.1},
-                            // Of the low sun that the water mirrors, deep paths are rare and bright.
-                            {"cloud", 320, 160, 12, 0.15},
-                            {"sky-shell", 320, 160, 10, 0.1}};
+const GalleryJob kJobs[] = {
+    {"quickstart", 320, 144, 10, 0.1},
+    {"cornell", 128, 64, 10, 0.05},
+    {"color-bleeding", 160, 80, 10, 0.015},
+    {"soft-shadows", 576, 288, 6, 0.2},
+    {"depth-of-field", 512, 320, 10, 0.15},
+    {"antialiasing", 64, 32, 10, 0.025},
+    {"perlin-sphere", 256, 128, 10, 0.1},
+    {"mesh-100k", 128, 64, 10, 0.015},
+    {"glass-caustics", 2400, 600, 10, 0.06},
+    {"gloss", 128, 64, 10, 0.06},
+    {"textured", 64, 32, 10, 0.1},
+    {"textured-gloss", 320, 160, 10, 0.12},
+    {"leaves", 96, 48, 10, 0.03},
+    {"island", 64, 32, 8, 0.015},
+    {"lanterns", 64, 32, 6, 0.1},
+    {"panorama", 192, 96, 6, 0.1},
+    {"stained-glass", 640, 320, 8, 0.15},
+    {"metropolis", 800, 400, 8, 0.12},
+    {"materials", 480, 240, 64, 0.1},
+    {"media", 64, 32, 64, 0.1},
+    {"god-rays", 224, 112, 10, 0.1},
+    // Of the low sun that the water mirrors, deep paths are rare and bright.
+    {"cloud", 320, 160, 12, 0.15},
+    {"sky-shell", 320, 160, 10, 0.1}};
 
 YamlScene small(const GalleryJob& job, const std::string& integrator, int samples) {
   const std::string folder = std::string("jobs/") + job.name;
