@@ -38,6 +38,8 @@ def look_at_final(scene: Any, look: Callable[[Any, Any], Any]) -> Any:
     try:
         with _plain_render(scene) as layer:
             bpy.ops.render.render(scene=scene.name, layer=layer)
+    except RuntimeError as error:  # Blender refuses, as without a camera
+        raise ValueError(str(error).removeprefix("Error: ").strip()) from None
     finally:
         _look = None
     if wrong:

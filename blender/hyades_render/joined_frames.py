@@ -31,21 +31,26 @@ def alike(one: hyades.Job, other: hyades.Job) -> bool:
     return _same(one, other)
 
 
-def join(moments: Sequence[float], jobs: Sequence[hyades.Job]) -> tuple[hyades.Job, list[Complaint]]:
+def join(
+    moments: Sequence[float], of_frames: Sequence[int | None], jobs: Sequence[hyades.Job]
+) -> tuple[hyades.Job, list[Complaint]]:
     """One job that is each of `jobs` at its moment [frames, rising], and what of them it cannot say. Between
-    moments values move on straight lines. The range of frames is that of the first job."""
-    joined = _Join(moments)
+    moments values move on straight lines. What a job holds still while the shutter is open is as at the moment that
+    is the frame's own: `of_frames` says of which frame each is, if of one. The range of frames is that of the first job."""
+    joined = _Join(moments, of_frames)
     return joined.described(list(jobs), "scene"), joined.complaints
 
 
 class _Join:
-    def __init__(self, moments: Sequence[float]) -> None:
+    def __init__(self, moments: Sequence[float], of_frames: Sequence[int | None]) -> None:
         self._moments = list(moments)
+        self._own = [at for at, frame in enumerate(of_frames) if frame is not None]
+        self._frames = [frame for frame in of_frames if frame is not None]
         self._made: dict[int, Any] = {}  # by the first moment's thing: others may name it
         self.complaints: list[Complaint] = []
 
-    def described(self, things: list[Any], where: str) -> Any:
-        """Things of one kind as one."""
+    def described(self, things: list[Any], where: str, blurs: bool = False) -> Any:
+        """Things of one kind as one. `blurs`: all of it moves while the shutter is open."""
         first = things[0]
         if id(first) in self._made:
             return self._made[id(first)]
@@ -60,15 +65,15 @@ class _Join:
                 continue
             values = [thing.__dict__.get(name) for thing in things]
             if any(value is not None for value in values):
-                setattr(made, name, self._value(key, values, f"{where} > {name}", key.default))
+                setattr(made, name, self._value(key, values, f"{where} > {name}", key.default, blurs or name == "camera"))
         return made
 
-    def _value(self, key: Key, values: list[Any], where: str, default: Any) -> Any:
+    def _value(self, key: Key, values: list[Any], where: str, default: Any, blurs: bool) -> Any:
         first = values[0]
         if key.takes == "entries":
             return self._entries(values, key.name)
         if all(_same(first, value) for value in values[1:]):
-            return self.described(values, where) if isinstance(first, Described) else first
+            return self.described(values, where, blurs) if isinstance(first, Described) else first
         if key.takes == "list of steps":
             return self._steps(values, where)
         if key.name == "emit":
@@ -76,26 +81,29 @@ class _Join:
         values = [default if value is None else value for value in values]
         first = values[0]
         if isinstance(first, Described) and all(type(value) is type(first) for value in values):
-            return self.described(values, where)
+            return self.described(values, where, blurs)
         if all(isinstance(value, MeshData) for value in values) and key.takes == "mesh file":
             return self._meshes(values)
-        if "animated" in key.takes or key.takes.startswith(("colour or", "number or")):
-            if all(_is_plain(value) for value in values):
-                return self._keys(values)
         if isinstance(first, (list, tuple)) and all(isinstance(v, (list, tuple)) for v in values):
             if len({len(value) for value in values}) == 1 and all(isinstance(v, Described) for v in first):
-                return [self._value(key, list(column), where, None) for column in zip(*values)]
-        return self._complain(where, first)
+                return [self._value(key, list(column), where, None, blurs) for column in zip(*values)]
+        held, moments = (values, self._moments) if blurs else ([values[at] for at in self._own], self._frames)
+        if all(_same(held[0], value) for value in held[1:]):
+            return held[0]
+        if "animated" in key.takes or key.takes.startswith(("colour or", "number or")):
+            if all(_is_plain(value) for value in held):
+                return self._keys(held, moments)
+        return self._complain(where, held[0])
 
-    def _keys(self, values: list[Any]) -> Keys:
-        """Values by moment, without those that lie between equal ones."""
+    def _keys(self, values: list[Any], moments: Sequence[float] = ()) -> Keys:
+        """Values by moment (empty: by all of them), without those that lie between equal ones."""
         if any(isinstance(value, (list, tuple)) for value in values):
             width = max(len(value) for value in values if isinstance(value, (list, tuple)))
             values = [list(v) if isinstance(v, (list, tuple)) else [v] * width for v in values]
         last = len(values) - 1
         kept = {
             moment: value
-            for at, (moment, value) in enumerate(zip(self._moments, values))
+            for at, (moment, value) in enumerate(zip(moments or self._moments, values))
             if at in (0, last) or not (values[at - 1] == value == values[at + 1])
         }
         return Keys(kept)
@@ -122,32 +130,30 @@ class _Join:
         made = {}
         for name in names:
             there = [(value or {}).get(name) for value in values]
-            present = [thing for thing in there if thing is not None]
+            present = [there[at] for at in self._own if there[at] is not None]
             where = f"{section.rstrip('s')} '{name}'"
+            if not present:
+                continue  # a shutter that opens before the frame sees it for the last time
             if any(type(thing) is not type(present[0]) for thing in present):
                 made[name] = self._complain(where, present[0])
                 continue
-            filled = [_nearest(there, at) for at in range(len(there))]
-            made[name] = self.described(filled, where)
-            if len(present) < len(there):
-                self._come_and_go(made[name], self._frames_with(there), section, where)
+            there = [thing if type(thing) is type(present[0]) else None for thing in there]
+            made[name] = self.described([_nearest(there, at) for at in range(len(there))], where)
+            if len(present) < len(self._own):
+                self._come_and_go(made[name], [there[at] is not None for at in self._own], section, where)
         return made
 
-    def _frames_with(self, there: list[Any]) -> list[bool]:
-        """For each moment: whether the thing is there at any moment of the same frame."""
-        frames = {int(moment) for moment, thing in zip(self._moments, there) if thing is not None}
-        return [int(moment) in frames for moment in self._moments]
-
     def _come_and_go(self, thing: Any, there: list[bool], section: str, where: str) -> None:
+        """`there`: in which frames it is."""
         if section == "objects":
-            size = Keys({m: 1.0 if is_there else _GONE for m, is_there in zip(self._moments, there)}, ease="step")
+            size = Keys({m: 1.0 if is_there else _GONE for m, is_there in zip(self._frames, there)}, ease="step")
             thing.transform = [hyades.Step(scale=size), *(thing.transform or [])]
         elif section == "lights":
             for name in _STRENGTHS:
                 if name in thing.keys() and _is_plain(getattr(thing, name)):
                     full = getattr(thing, name)
                     values = [full if is_there else 0.0 for is_there in there]
-                    setattr(thing, name, Keys(dict(zip(self._moments, values)), ease="step"))
+                    setattr(thing, name, Keys(dict(zip(self._frames, values)), ease="step"))
                     return
             self._complain(where, None)
 

@@ -1,5 +1,5 @@
-"""Frames with their shutter: the scene is exported when it opens and when it closes, for the pass Vector also at the next
-frame, and joined to one job."""
+"""Frames with their shutter: the scene is exported when it opens, at the frame's own time and when it closes, for the pass
+Vector also a frame later, and joined to one job. A moment of the job is when its shutter has been open for so long."""
 
 from __future__ import annotations
 
@@ -20,6 +20,7 @@ class Moments:
         """`many`: there will be more frames than one."""
         self._many = many
         self._times: list[float] = []
+        self._of_frames: list[int | None] = []
         self._jobs: list[hyades.Job] = []
         self._complaints: list[Complaint] = []
         self._names = Names()
@@ -30,16 +31,17 @@ class Moments:
         scene = depsgraph.scene
         frame, camera = scene.frame_current, scene.camera
         position, self._shutter = shutter(scene)
-        times = {0.0, self._shutter}
+        own = -position * self._shutter
+        times = {0.0, own, self._shutter}
         if depsgraph.view_layer_eval.use_pass_vector:
             times.add(1.0)  # the layer is the way to the next frame
         if times == {0.0}:
-            self._add(frame, depsgraph, self._many)
+            self._add(frame, depsgraph, self._many, frame)
             return
         try:
             for time in sorted(times):
-                _set_time(engine, frame + position * self._shutter + time)
-                self._add(frame + time, depsgraph, True, camera)
+                _set_time(engine, frame if time == own else frame - own + time)
+                self._add(frame + time, depsgraph, True, frame if time == own else None, camera)
         finally:
             _set_time(engine, frame)
         if scene.render.motion_blur_shutter > 1:
@@ -50,7 +52,7 @@ class Moments:
         job, complaints = self._jobs[0], []
         if len(self._jobs) > 1:
             self._tell_of_copies(moving_copies.spread(self._jobs, self._names))
-            job, complaints = joined_frames.join(self._times, self._jobs)
+            job, complaints = joined_frames.join(self._times, self._of_frames, self._jobs)
         job.frames = hyades.Frames(range=frames, fps=job.frames.fps, shutter=self._shutter)
         for complaint in complaints:
             self._complain(complaint.where, complaint.what)
@@ -62,14 +64,18 @@ class Moments:
                 raise ValueError(f"{what}: more than one job can say: render its frames one by one")
             self._complain("motion blur", f"{what}: too many; they stand still")
 
-    def _add(self, time: float, depsgraph: Any, moves: bool, camera: Any = None) -> None:
-        """`camera`: through which the frame is seen, though a marker changes it between two frames; None: the scene's."""
-        if time in self._times:
-            return  # the end of one frame is the beginning of the next
+    def _add(self, time: float, depsgraph: Any, moves: bool, of_frame: int | None, camera: Any = None) -> None:
+        """`of_frame`: the frame whose own time it is. `camera`: through which it is seen, though a marker changes it between
+        two frames; None: the scene's."""
+        if time in self._times:  # the end of one frame is the beginning of the next
+            if of_frame is not None:
+                self._of_frames[self._times.index(time)] = of_frame
+            return
         exported = export_job(depsgraph, settings=depsgraph.scene.hyades, moves=moves, camera=camera)
         if self._jobs:
             joined_frames.share(self._jobs[-1], exported.job)
         self._times.append(time)
+        self._of_frames.append(of_frame)
         self._jobs.append(exported.job)
         self._names.objects |= exported.names.objects
         self._names.materials |= exported.names.materials

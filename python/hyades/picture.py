@@ -14,6 +14,9 @@ from .png import decode_png, encode_png
 Array = Any
 
 
+_KINDS = {("f", 2), ("f", 4), ("f", 8), ("u", 1), ("u", 2)}
+
+
 class Picture:
     """An array (h, w) or (h, w, 1 to 4), row 0 at the top. Floats are linear light, whole numbers
     (uint8, uint16) codes of sRGB. Notebooks show it; in a job it can be the file of a texture."""
@@ -22,7 +25,8 @@ class Picture:
         self.array = numpy.asarray(array)
         if self.array.ndim not in (2, 3) or self.array.shape[2:] not in ((), (1,), (2,), (3,), (4,)):
             raise ValueError(f"an array of the shape {self.array.shape} is no picture")
-        if self.array.dtype.kind != "f" and self.array.dtype not in ("uint8", "uint16"):
+        kind = self.array.dtype
+        if not 0 < self.array.size or (kind.kind, kind.itemsize) not in _KINDS:
             raise ValueError(f"an array of {self.array.dtype} is no picture: expected floats, uint8 or uint16")
 
     @classmethod

@@ -13,6 +13,7 @@ from addon import AddOnTest
 
 from hyades_render import animation, complaints, moving_copies, panels, preferences
 from hyades_render.export import objects
+from hyades_render.export.nodes import graph
 
 
 class ExportTest(AddOnTest):
@@ -152,8 +153,7 @@ class Copies(ExportTest):
             image.pixels, image.alpha_mode = [1, 1, 1, 1, 1, 1, 1, alpha], mode
             self.assertAlmostEqual(darkest(), light, delta=0.003)  # of bytes
         image.alpha_mode = "STRAIGHT"
-        transparent = made.node_tree.nodes.new("ShaderNodeBsdfTransparent")
-        made.node_tree.links.new(texture.outputs["Alpha"], transparent.inputs[0])
+        made.node_tree.links.new(texture.outputs["Alpha"], shader.inputs["Roughness"])
         self.assertEqual(darkest(), 1)
 
     def test_what_a_job_has_not_is_told(self) -> None:
@@ -167,6 +167,12 @@ class Copies(ExportTest):
         self.assertIn("'Color' is held at 1", said)
         self.assertIn("camera 'Camera': its scale mirrors the picture", said)
         self.assertIn("object 'Smoke': only volumes of files are supported", said)
+        self.assertNotIn("without an inside", said)
+        bpy.data.objects["Cube"].data.materials[0] = self.material("Glass", "ShaderNodeBsdfGlass")[0]
+        self.assertNotIn("without an inside", self.export()[1])
+        bpy.ops.mesh.primitive_plane_add()
+        bpy.context.object.data.materials.append(bpy.data.materials["Glass"])
+        self.assertIn("object 'Plane': glass without an inside", self.export()[1])
 
 
 class Moving(ExportTest):
@@ -222,6 +228,56 @@ class Moving(ExportTest):
         opacity = job.objects["Other"].material.opacity.keys
         self.assertEqual((opacity[1], round(opacity[2], 3), opacity[3]), (0, 0.5, 1))
         self.assertEqual(job.objects["Other"].material.color, [0.5, 0.5, 0.5])
+
+
+    def test_what_a_shutter_does_not_blur_is_as_at_its_frame(self) -> None:
+        self.scene.render.use_motion_blur, self.scene.render.motion_blur_shutter = True, 0.5
+        lamp, cube = bpy.data.lights["Light"], bpy.data.objects["Cube"]
+        for frame in (1, 2, 3):
+            lamp.energy, cube.hide_render, cube.location.x = 100 * frame, frame == 3, frame
+            lamp.keyframe_insert("energy", frame=frame)
+            cube.keyframe_insert("hide_render", frame=frame)
+            cube.keyframe_insert("location", frame=frame)
+        for curve in (*lamp.animation_data.action.fcurves, *cube.animation_data.action.fcurves):
+            for key in curve.keyframe_points:
+                key.interpolation = "CONSTANT" if "energy" in curve.data_path else "LINEAR"
+        for position, moved in (("CENTER", (1.75, 2, 2.25)), ("START", (2, 2.5)), ("END", (1.5, 2))):
+            render = self.scene.render if hasattr(self.scene.render, "motion_blur_position") else self.scene.cycles
+            render.motion_blur_position = position
+            job, said = self.film()
+            self.assertEqual(said, "")
+            power = job.lights["Light"].power.keys
+            self.assertEqual([round(power[frame] / power[1], 3) for frame in (1, 2, 3)], [1, 2, 3])
+            size, *_, move = job.objects["Cube"].transform
+            self.assertEqual(size.scale.keys, {1: 1.0, 2: 1.0, 3: 1e-6})
+            there = [move.translate.keys.get(2 + late) for late in (0, 0.25, 0.5)]
+            self.assertEqual([round(at[0], 3) for at in there if at][-1], moved[-1])
+            self.assertEqual(round(there[0][0], 3), moved[0])
+
+    def test_alpha_counts_that_gets_to_an_output(self) -> None:
+        made, _ = self.material("Leaf")
+        tree = made.node_tree
+        texture = tree.nodes.new("ShaderNodeTexImage")
+        alpha = graph.Output(texture, texture.outputs["Alpha"])
+        self.assertFalse(graph.is_taken(alpha))
+        nowhere = tree.nodes.new("ShaderNodeMath")
+        link = tree.links.new(alpha.socket, nowhere.inputs[0])
+        self.assertFalse(graph.is_taken(alpha))
+        tree.links.new(nowhere.outputs[0], tree.nodes["Diffuse BSDF"].inputs["Roughness"])
+        self.assertTrue(graph.is_taken(alpha))
+        link.is_muted = True
+        self.assertFalse(graph.is_taken(alpha))
+        group = bpy.data.node_groups.new("Leaf", "ShaderNodeTree")
+        group.outputs.new("NodeSocketColor", "Color") if hasattr(group, "outputs") else group.interface.new_socket(
+            "Color", in_out="OUTPUT", socket_type="NodeSocketColor")
+        inner, end = group.nodes.new("ShaderNodeTexImage"), group.nodes.new("NodeGroupOutput")
+        group.links.new(inner.outputs["Alpha"], end.inputs[0])
+        holder = tree.nodes.new("ShaderNodeGroup")
+        holder.node_tree = group
+        alpha = graph.Output(inner, inner.outputs["Alpha"], (holder,))
+        self.assertFalse(graph.is_taken(alpha))
+        tree.links.new(holder.outputs[0], tree.nodes["Diffuse BSDF"].inputs["Color"])
+        self.assertTrue(graph.is_taken(alpha))
 
 
 class NotThere(ExportTest):

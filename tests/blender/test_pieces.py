@@ -103,7 +103,8 @@ class Joined(unittest.TestCase):
     def joined(self, *jobs: hyades.Job, moments=None):
         for before, now in zip(jobs, jobs[1:]):
             joined_frames.share(before, now)
-        return joined_frames.join(moments or range(1, len(jobs) + 1), jobs)
+        moments = moments or range(1, len(jobs) + 1)
+        return joined_frames.join(moments, [int(at) if at == int(at) else None for at in moments], jobs)
 
     def test_what_differs_becomes_keys(self) -> None:
         job, complaints = self.joined(self.job(0), self.job(1), self.job(3))

@@ -8,7 +8,7 @@ from copy import copy
 from typing import Any, NamedTuple, Optional
 
 import numpy
-from hyades import objects
+from hyades import materials, objects
 
 from . import axes
 from .context import Context, free_name
@@ -18,6 +18,7 @@ from .materials import Made, material_of
 from .meshes import Origin, Surface, part
 from .nodes import values
 from .nodes.displacement import displaced
+from .nodes.evaluate.noise import hashed
 from .nodes.surface import PartOfSurface
 from .places import MatrixPlaces
 from .visibility import LayerFlags, is_seen
@@ -158,7 +159,13 @@ def _id(instance: Any) -> tuple[int, ...]:
 
 
 def _origin(instance: Any) -> Origin:
-    return Origin(instance.parent if instance.is_instance else None, (instance.random_id & 0xFFFFFFFF) / 0xFFFFFFFF)
+    if instance.is_instance:
+        return Origin(instance.parent, (instance.random_id & 0xFFFFFFFF) / 0xFFFFFFFF)
+    # As Cycles: by the name.
+    number = 0
+    for byte in instance.object.name.encode():
+        number = (37 * number + byte) & 0xFFFFFFFF
+    return Origin(None, float(hashed(number, 0)[0]) / 0xFFFFFFFF)
 
 
 @contextmanager
@@ -178,8 +185,8 @@ def evaluated_mesh(object: Any) -> Iterator[Any]:
 def pieces_of(context: Context, object: Any, matrix: Any, origin: Origin) -> list[Piece]:
     """The parts of an object's evaluated mesh, one for each material; `matrix`, Blender's, leads into its world."""
     is_mesh = object.type == "MESH"
-    materials = tuple(slot.material.name_full if slot.material else "" for slot in object.material_slots)
-    key = (object.data.as_pointer(), materials)
+    slotted = tuple(slot.material.name_full if slot.material else "" for slot in object.material_slots)
+    key = (object.data.as_pointer(), slotted)
     if is_mesh and key in context.pieces:
         return context.pieces[key]
     with evaluated_mesh(object) as mesh:
@@ -191,6 +198,7 @@ def pieces_of(context: Context, object: Any, matrix: Any, origin: Origin) -> lis
         parts = [PartOfSurface(surface, slots == slot if len(kinds) > 1 else slice(None)) for slot in kinds]
         try:
             found = [_piece(context, one, _material_in(context, object, int(slot))) for one, slot in zip(parts, kinds)]
+            _tell_of_panes(context, object, mesh, found)
         except ValueError as error:  # of a mesh that the job refuses: it has numbers that are none, say
             context.complain(f"object '{object.name}'", f"its mesh is left out: {error}")
             return []
@@ -209,6 +217,22 @@ def _piece(context: Context, whole: PartOfSurface, data: Any) -> Piece:
     if not values.is_constant(made.emission, 0):
         body.emit = objects.Emit(color=values.held(made.emission, 0.0, 1e18), radiance=1, two_sided=True)
     return Piece(body, made, whole.is_of_object)
+
+
+def _tell_of_panes(context: Context, object: Any, mesh: Any, pieces: list[Piece]) -> None:
+    """Complains of a mesh of glass that has no inside: light that gets into glass is denser for the job, not for Cycles."""
+    if not any(_is_glass(piece.body.material) for piece in pieces):
+        return
+    edges = numpy.empty(len(mesh.loops), "int32")
+    mesh.loops.foreach_get("edge_index", edges)
+    if (numpy.bincount(edges) == 1).any():
+        what = "glass without an inside is brighter or darker than in Cycles: give it a thickness (Solidify)"
+        context.complain(f"object '{object.name}'", what)
+
+
+def _is_glass(material: Any) -> bool:
+    through = getattr(material, "transmission", 0) if isinstance(material, materials.Principled) else 0
+    return isinstance(material, materials.Dielectric) or not values.is_constant(through, 0)
 
 
 def _material_in(context: Context, object: Any, slot: int) -> Optional[Any]:

@@ -7,6 +7,7 @@ import itertools
 import secrets
 import warnings
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from operator import index
 from pathlib import Path
 from typing import Any, Literal, TypeAlias
 
@@ -330,9 +331,11 @@ class Farm:
 
 def _id(thing: Any) -> int:
     number = getattr(thing, "id", thing)
-    if isinstance(number, int) and not isinstance(number, bool):
-        return number
-    raise ValueError(f"expected a job or worker, or its number, not {number!r}; Farm.find() finds jobs by name")
+    try:
+        return int(number) if isinstance(number, str) else index(number)
+    except (TypeError, ValueError):
+        words = f"expected a job or worker, or its number, not {number!r}; Farm.find() finds jobs by name"
+        raise ValueError(words) from None
 
 
 def _path(job: JobId, below: str = "") -> str:

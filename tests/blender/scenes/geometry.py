@@ -166,6 +166,16 @@ def color_by_object() -> None:
     camera((0, -6, 2.5), (0, 0, 0.5))
 
 
+@scene(samples=64)
+def random_by_object() -> None:
+    # As random as each object's name.
+    made = material(node="ShaderNodeEmission")
+    link(made, node(made, "ShaderNodeObjectInfo").outputs["Random"], made.node_tree.nodes["Emission"].inputs["Color"])
+    for number, name in enumerate(("Cube", "Würfel", "Cube.007")):
+        primitive("cube", made, at=(1.6 * number - 1.6, 0, 0.5), size=1).name = name
+    camera((0, -6, 2.5), (0, 0, 0.5))
+
+
 def displaced_grid(method: str, scale: float, cuts: int):
     made = material(Color=(0.6, 0.5, 0.3))
     set_of_cycles(made, "displacement_method", method)

@@ -30,6 +30,20 @@ def principled_glass() -> None:
     ball(material(node="ShaderNodeBsdfPrincipled", Base_Color=1.0, Transmission=1.0, Roughness=0.0, IOR=1.45))
 
 
+@scene(mean=0.02, block=0.06)
+def principled_tinted_glass() -> None:
+    keys = {"Transmission": 1.0, "Roughness": 0.0, "IOR": 1.45}
+    ball(material(node="ShaderNodeBsdfPrincipled", Base_Color=(0.4, 0.7, 0.9), **keys))
+
+
+@scene(mean=0.05, block=0.08)
+def principled_room() -> None:
+    # All light comes from walls, many times over: what a surface keeps of it counts several times.
+    primitive("cube", material("Walls", "ShaderNodeBsdfPrincipled", Base_Color=0.7, Roughness=0.5), at=(0, 0, 2), size=14)
+    light("AREA", 400, at=(0, -1, 6), towards=(0, -1, 0), size=1)
+    world(0)
+
+
 @scene(mean=0.02, block=0.1)
 def principled_coat() -> None:
     ball(material(node="ShaderNodeBsdfPrincipled", Base_Color=(0.2, 0.05, 0.3), Clearcoat=1.0, Roughness=0.5))

@@ -6,7 +6,7 @@ import tempfile
 
 import bpy
 import numpy
-from scene import camera, light, link, material, node, primitive, said, scene, shader_of
+from scene import camera, light, link, material, node, primitive, said, scene, shader_of, world
 
 
 def board(kind: str, output: str | int = 0, coordinates: str | None = "UV", scale=(1.0, 1.0, 1.0), properties=None, **inputs):
@@ -127,6 +127,22 @@ def alpha_of_light() -> None:
 @scene(samples=64)
 def alpha_of_packed_light() -> None:
     through("STRAIGHT", "OPEN_EXR", packed=True, asked=False)
+
+
+@scene(samples=64, block=0.07)
+def alpha_from_afar() -> None:
+    # Pixels of the picture see many of the texture, inside the disc and outside.
+    y, x = numpy.mgrid[0:256, 0:256] / 16 % 1 - 0.5
+    colors = numpy.ones((256, 256, 4), "float32")
+    colors[..., :3], colors[..., 3] = (0.2, 0.5, 0.1), x * x + y * y < 0.16
+    image = bpy.data.images.new("Discs", 256, 256, alpha=True)
+    image.pixels.foreach_set(colors.reshape(-1))
+    image.pack()
+    made, _ = board("ShaderNodeTexImage", properties={"image": image})
+    diffuse = node(made, "ShaderNodeBsdfDiffuse")
+    link(made, made.node_tree.nodes["Image Texture"].outputs["Color"], diffuse.inputs["Color"])
+    link(made, diffuse.outputs[0], made.node_tree.nodes["Material Output"].inputs["Surface"])
+    world(1)
 
 
 @scene(samples=64)

@@ -44,6 +44,31 @@ def becomes_grey(end: Input) -> bool:
     return isinstance(found, Output) and found.socket.type == "RGBA" and "VALUE" in passed
 
 
+def is_taken(output: Output) -> bool:
+    """Whether what comes out there gets to an output of the whole graph."""
+    waiting, seen = [output], set()
+    while waiting:
+        node, socket, groups = waiting.pop()
+        key = (socket.as_pointer(), tuple(group.as_pointer() for group in groups))
+        if key in seen:
+            continue
+        seen.add(key)
+        for link in socket.links:
+            if link.is_muted:
+                continue
+            to = link.to_node
+            if to.type.startswith("OUTPUT_"):
+                return True
+            if to.type == "GROUP_OUTPUT" and groups:
+                waiting += [Output(groups[-1], end, groups[:-1]) for end in [_same(groups[-1].outputs, link.to_socket)] if end]
+            elif to.type == "GROUP" and to.node_tree is not None:
+                begins = [_same(n.outputs, link.to_socket) for n in to.node_tree.nodes if n.type == "GROUP_INPUT"]
+                waiting += [Output(end.node, end, (*groups, to)) for end in begins if end]
+            else:
+                waiting += [Output(to, end, groups) for end in to.outputs]
+    return False
+
+
 def _followed(end: Input) -> tuple[Output | Input, set[str]]:
     """The source, and the types of the inputs on the way to it."""
     passed: set[str] = set()

@@ -9,7 +9,7 @@ import numpy
 
 from ..files import may_be_sent
 from .graph import Output
-from .pixels import LINEAR, is_as_in_file, pixels_of
+from .pixels import LINEAR, asks_for_alpha, has_alpha, is_as_in_file, pixels_of
 from .translator import Inexpressible, Translator
 
 _READ = {".png", ".jpg", ".jpeg", ".tif", ".tiff", ".exr", ".hdr", ".tga", ".bmp", ".qoi", ".ppm", ".pgm", ".pfm"}
@@ -43,6 +43,8 @@ def image_file(translator: Translator, node: Any, output: Output) -> ImageFile:
     if image.colorspace_settings.name not in LINEAR | {"sRGB"}:
         translator.complain(node, f"the colour space {image.colorspace_settings.name} is read as sRGB")
     path = os.path.abspath(_path(image))
+    if image.source in ("TILED", "SEQUENCE") and has_alpha(image) and not asks_for_alpha(output):
+        translator.complain(node, "the colours of its files are taken as they are, not times alpha")
     if image.source == "TILED":
         _check_tiles(translator, output, path)
         return ImageFile(path, space, True)
@@ -88,9 +90,11 @@ def _path(image: Any, path: str = "") -> str:
 
 
 def _array(translator: Translator, output: Output) -> numpy.ndarray:
-    """Light (h, w, 4), row 0 at the top."""
-    is_float = output.node.image.is_float
-    return pixels_of(output, translator.context)[::-1].astype("float32" if is_float else "float16")
+    """Light (h, w, 3 or 4), row 0 at the top; with alpha where that is asked for: beside it colours are no more times alpha
+    for the job, which filters them so."""
+    channels = 4 if asks_for_alpha(output) else 3
+    kind = "float32" if output.node.image.is_float else "float16"
+    return pixels_of(output, translator.context)[::-1, :, :channels].astype(kind)
 
 
 def _end_of(data: bytes) -> str:

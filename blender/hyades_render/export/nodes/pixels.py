@@ -12,6 +12,7 @@ from typing import Any
 
 import numpy
 
+from . import graph
 from .graph import Output
 from .translator import Inexpressible
 
@@ -23,25 +24,34 @@ def pixels_of(output: Output, context: Any) -> Array:
     """Linear light (h, w, 4), float32, of a node's image, row 0 at the bottom, with alpha. Kept for the export.
     Inexpressible: its file is missing, or no picture."""
     image = output.node.image
-    key = ("pixels", image.name_full, _asks_for_alpha(output))
+    key = ("pixels", image.name_full, asks_for_alpha(output))
     if key not in context.materials:
         found = _kept(output)
         color, alpha = found[..., :3], found[..., 3:4]
-        if _has_alpha(image):
-            color = color * _times_alpha(output, alpha)
-        if not image.is_float:
+        is_codes = not image.is_float
+        if has_alpha(image):
+            if _are_codes_in_file(image):
+                color, is_codes = _encoded(_times(color, alpha, -1)), True
+            color = _times(color, alpha, _power(output, is_codes))
+        if is_codes:
             color = _decoded(image, color, context)
         context.materials[key] = numpy.concatenate([color, alpha], axis=2)
     return context.materials[key]
 
 
+def asks_for_alpha(output: Output) -> bool:
+    """Whether something takes the alpha of a node."""
+    alpha = next((socket for socket in output.node.outputs if socket.identifier == "Alpha"), None)
+    return alpha is not None and alpha.is_linked and graph.is_taken(Output(output.node, alpha, output.groups))
+
+
 def is_as_in_file(output: Output, context: Any) -> bool:
     """Whether Cycles sees the colours that the node's image has in its file."""
     image = output.node.image
-    if image.source != "FILE" or not _has_alpha(image):
+    if image.source != "FILE" or not has_alpha(image):
         return True
     other = "STRAIGHT" if _is_exr(image) else "PREMUL"
-    if _asks_for_alpha(output) != _is_exr(image) and not (_is_kept_by_blender(image) and image.alpha_mode == other):
+    if asks_for_alpha(output) != _is_exr(image) and not (_is_kept_by_blender(image) and image.alpha_mode == other):
         return True
     key = ("opaque", image.name_full)
     if key not in context.materials:
@@ -73,28 +83,38 @@ def _decoded(image: Any, codes: Array, context: Any) -> Array:
     return numpy.where(codes <= 0.04045, codes / 12.92, (numpy.maximum(codes + 0.055, 0) / 1.055) ** 2.4)
 
 
-def _times_alpha(output: Output, alpha: Array) -> Array:
-    """What makes of colours that Blender holds those that Cycles sees."""
+def _encoded(light: Array) -> Array:
+    return numpy.where(light <= 0.0031308, 12.92 * light, 1.055 * numpy.maximum(light, 0.0031308) ** (1 / 2.4) - 0.055)
+
+
+def _power(output: Output, is_codes: bool) -> int:
+    """Of alpha: with it as a factor, what Blender holds is what Cycles sees."""
     image = output.node.image
     power = 0
-    if not _is_kept_by_blender(image):  # back to what the file says, and what Cycles makes of that
-        if image.is_float:
-            power += {"STRAIGHT": -1, "PREMUL": 0}[image.alpha_mode] + (0 if _is_exr(image) else 1)
-        else:
-            power += {"STRAIGHT": 0, "PREMUL": 1}[image.alpha_mode]
-    power += -1 if image.is_float and _asks_for_alpha(output) else 0
-    power += 1 if not image.is_float and not _asks_for_alpha(output) else 0
-    return numpy.where(alpha > 0, numpy.maximum(alpha, 1e-20) ** power, 1 if power <= 0 else 0)
+    if not _is_kept_by_blender(image):  # back to what the file says
+        power += {"STRAIGHT": 0, "PREMUL": 1}[image.alpha_mode] if is_codes else {"STRAIGHT": -1, "PREMUL": 0}[image.alpha_mode]
+        power += 0 if is_codes or _is_exr(image) else 1
+    if is_codes:
+        return power if asks_for_alpha(output) else power + 1
+    return power - 1 if asks_for_alpha(output) else power
 
 
-def _has_alpha(image: Any) -> bool:
-    """Whether alpha has to do with colours."""
+def _times(color: Array, alpha: Array, power: int) -> Array:
+    """Colours times alpha to some power; where alpha is 0 they are as they are, or black."""
+    return color * numpy.where(alpha > 0, numpy.maximum(alpha, 1e-20) ** power, 1 if power <= 0 else 0)
+
+
+def has_alpha(image: Any) -> bool:
+    """Whether there is alpha, and has to do with colours."""
     is_of_colors = image.alpha_mode in ("STRAIGHT", "PREMUL") and not image.colorspace_settings.is_data
-    return is_of_colors and image.channels == 4 and image.depth not in (24, 96)  # bits of those without
+    is_there = image.channels == 4 and image.depth not in (8, 24, 96) and image.file_format != "HDR"
+    return is_of_colors and is_there
 
 
-def _asks_for_alpha(output: Output) -> bool:
-    return any(socket.identifier == "Alpha" and socket.is_linked for socket in output.node.outputs)
+def _are_codes_in_file(image: Any) -> bool:
+    """Whether Blender made light of a file that holds codes of more than eight bits, which Cycles reads by itself."""
+    space = image.colorspace_settings.name
+    return image.is_float and not _is_exr(image) and space not in LINEAR and not _is_kept_by_blender(image)
 
 
 def _is_kept_by_blender(image: Any) -> bool:

@@ -5,7 +5,8 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from hyades import materials
+import numpy
+from hyades import materials, textures
 
 from . import values
 from .bsdfs import subsurface_of
@@ -15,11 +16,23 @@ from .normals import normal_keys
 from .translator import Translator
 from .values import Value, held
 
+_SPECULARS = (0.0, 0.25, 0.5, 1.0)
+_ROUGHNESSES = (0.05, 0.2, 0.35, 0.5, 0.75, 1.0)
+_BURLEY = (0.958, 0.975, 0.991, 1.008, 1.036, 1.065)
+"""By roughness: what Burley's diffuse reflects of even light, by his formula."""
+_GLOSS = (
+    (0.0, 0.0, 0.0, 0.0, 0.0, 0.0),
+    (0.0652, 0.0612, 0.0501, 0.0375, 0.0215, 0.0117),
+    (0.0911, 0.0869, 0.0744, 0.0590, 0.0366, 0.0208),
+    (0.1319, 0.1276, 0.1141, 0.0955, 0.0635, 0.0375),
+)
+"""By Specular and roughness: what black spheres of the job's Principled reflect of an even sky."""
+
 
 @shader("BSDF_PRINCIPLED")
 def principled(translator: Translator, output: Output) -> Closure:
     is_new = output.input("Specular IOR Level") is not None
-    made = materials.Principled(**_body(translator, output), **normal_keys(translator, output))
+    made = materials.Principled(**_keys(translator, output), **normal_keys(translator, output))
     (_since_4_0 if is_new else _until_3_6)(translator, output, made)
     _anisotropy(translator, output, made)
     medium_keys = _subsurface(translator, output, is_new)
@@ -36,7 +49,7 @@ def _said(key: str, value: Value, default: float) -> dict[str, Any]:
     return {} if values.is_constant(value, default) else {key: value}
 
 
-def _body(translator: Translator, output: Output) -> dict[str, Any]:
+def _keys(translator: Translator, output: Output) -> dict[str, Any]:
     keys: dict[str, Any] = {"base_color": translator.color(output.input("Base Color"), 0.8)}
     keys |= _said("metallic", held(translator.number(output.input("Metallic"))), 0)
     keys |= _said("roughness", held(translator.number(output.input("Roughness"), 0.5)), 0.5)
@@ -71,6 +84,25 @@ def _until_3_6(translator: Translator, output: Output, made: materials.Principle
     blur = translator.number(output.input("Transmission Roughness"))
     if not values.is_constant(blur, 0) and not values.is_constant(made.transmission, 0):
         translator.complain(output.node, "what is seen through is as rough as what is reflected")
+    made.base_color = _color_until_3_6(translator, output, made, specular)
+
+
+def _color_until_3_6(translator: Translator, output: Output, made: materials.Principled, specular: Value) -> Value:
+    """The job's body is Lambert's, less what the gloss over it reflects, and has the colour of what goes in and out again.
+    Cycles' is Burley's (2012), rough ones reflect more, and adds the gloss; it colours what goes through at each surface."""
+    base, metallic, through = made.base_color, made.metallic, made.transmission
+    if not (values.is_constant(through, 0) or values.is_constant(through, 1) or values.is_constant(metallic, 1)):
+        translator.complain(output.node, "what is matt and what goes through have one colour: with both it is about right")
+    matt = values.product(base, _body(specular, made.roughness))
+    twice = textures.Power(input=base, exponent=2) if values.is_texture(base) else values.product(base, base)
+    return held(values.mixed(values.mixed(matt, twice, through), base, metallic))
+
+
+def _body(specular: Value, roughness: Value) -> float:
+    """How much more even light Cycles' body reflects than the job's; of textures as with 0.5."""
+    amount, blur = (0.5 if values.is_texture(value) else float(values.number(value)) for value in (specular, roughness))
+    by_amount = [numpy.interp(blur, _ROUGHNESSES, row) for row in _GLOSS]
+    return float(numpy.interp(blur, _ROUGHNESSES, _BURLEY) / (1 - numpy.interp(amount, _SPECULARS, by_amount)))
 
 
 def _towards(translator: Translator, output: Output, made: materials.Principled, amount: Value) -> Value:

@@ -71,7 +71,7 @@ class Translator:
     def color(self, end: Optional[Input], default: Value = 0.0) -> Any:
         """What an input is, as what things make of light: 0 to 1. Complains of a constant beyond."""
         value = self.value(end, default)
-        if end is not None and not values.is_texture(value) and max(values.color(value)) > 1:
+        if end is not None and not values.is_texture(value) and max(values.color(value)) > 1.00001:
             self.complain(end.socket.node, f"'{end.socket.name}' is held at 1: nothing reflects more light than it gets")
         return values.held(value)
 
