@@ -88,8 +88,7 @@ int bench_command(int argc, char** argv) {
   uint32_t samples = 0;
   auto* command =
       app.add_subcommand("scaling", "renders the first frame of a job with 1..N threads");
-  command->add_option("job", path, "the job (.yaml), or a scene or mesh (.glb, ...)")
-      ->capture_default_str();
+  command->add_option("job", path, job_words())->capture_default_str();
   declare_scene_options(*command, scene_options);
   command->add_option("--threads", threads, "most threads")
       ->check(in_range(1, 1024))

@@ -17,6 +17,7 @@
 #include "cli/frame_range.h"
 #include "cli/load_job.h"
 #include "cli/sample_cost.h"
+#include "cli/scene_options.h"
 #include "coordinator/local/local_plan.h"
 #include "coordinator/scheduler/run_length.h"
 #include "coordinator/scheduler/tile_grid.h"
@@ -96,8 +97,7 @@ std::optional<int> parse_check_options(int argc, char** argv, CheckOptions& opti
       "Reads a job and reports every mistake in it; a good one is summed up: frames, triangles, "
       "units, and an estimate of memory and core-hours.",
       "hyades check");
-  app.add_option("job", options.path, "the job (.yaml), or a scene or mesh (.glb, ...)")
-      ->required();
+  app.add_option("job", options.path, job_words())->required();
   app.add_option("--curve", options.curve,
                  "print this value of the job over its frames instead: camera.fov, "
                  "objects.NAME.at, objects.NAME.transform[0].rotate_y, materials.NAME.color, ...");

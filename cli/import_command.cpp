@@ -5,6 +5,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "cli/blend_job.h"
 #include "cli/command_line.h"
 #include "cli/load_job.h"
 #include "cli/number_range.h"
@@ -52,9 +53,11 @@ int import_command(int argc, char** argv) {
       "exit status: 0 written, 2 not");
   if (const auto status = parse_command_line(app, argc, argv, kBadInput)) return *status;
   if (!core::is_scene_file(request.scene)) {
-    print_error(core::Error{"expected a scene, mesh or script (" + core::scene_file_ends() + ")" +
-                            core::hint_for_scene_file(request.scene)}
-                    .in(request.scene));
+    print_error(
+        core::Error{"expected a scene, mesh or script (" + core::scene_file_ends() + ")" +
+                    (is_blend_file(request.scene) ? ": Blender writes .glb"
+                                                  : core::hint_for_scene_file(request.scene))}
+            .in(request.scene));
     return kBadInput;
   }
   if (request.job.empty()) {

@@ -19,13 +19,14 @@
 namespace hyades::cli {
 namespace {
 
-/// COMMAND, NAME, MARKS (for the frame's number, or nothing), FRAMES and TURN are filled in.
+/// <COMMAND>, <NAME>, <MARKS> (for the frame's number, or nothing), <FRAMES> and <TURN> are filled
+/// in.
 constexpr std::string_view kJob =
-    R"yaml(# COMMAND renders it; 'hyades check' tells what is wrong in it, and what it costs.
+    R"yaml(# <COMMAND> renders it; 'hyades check' tells what is wrong in it, and what it costs.
 # docs/job.md describes every key. Lengths are metres, y is up, colours are linear [r, g, b], "#d8c8a8" or 3200K.
 hyades: 1
-name: NAME
-FRAMES
+name: "<NAME>"
+<FRAMES>
 film: {size: [960, 540]}
 sampling: {samples: 128}  # or {noise: 0.05, samples: 1024}: as many as each part of the picture needs
 
@@ -49,7 +50,7 @@ materials:
 objects:
   ground: {shape: rectangle, size: [40, 40], material: floor}
   glass: {shape: sphere, radius: 0.7, at: [-0.9, 0.7, 0.3], material: glass}
-  block: {shape: box, size: [0.9, 0.9, 0.9], material: clay, transform: [{rotate_y: TURN}], at: [0.5, 0.45, -0.6]}
+  block: {shape: box, size: [0.9, 0.9, 0.9], material: clay, transform: [{rotate_y: <TURN>}], at: [0.5, 0.45, -0.6]}
   ball: {shape: sphere, radius: 0.35, at: [0.75, 0.35, 0.75], material: brass}
   # statue: {mesh: statue.ply, material: clay}   # also .obj; whole scenes: {gltf: statue.glb}
   lamp: {shape: sphere, radius: 1.8, at: [-4, 6.5, 4.5], emit: {color: 3800K, power: 2600}}  # watts
@@ -57,11 +58,11 @@ objects:
 environment: {color: [0.5, 0.65, 0.9], strength: 0.9}  # or {image: sky.hdr}
 
 outputs:
-  - {file: NAMEMARKS.exr, layers: [beauty, alpha, albedo, normal]}
-  - {file: NAMEMARKS.png, tone_map: filmic, denoise: true}
+  - {file: <NAME><MARKS>.exr, layers: [beauty, alpha, albedo, normal]}
+  - {file: <NAME><MARKS>.png, tone_map: filmic, denoise: true}
 )yaml";
 
-constexpr std::string_view kVideo = "  - {file: NAME.mp4, tone_map: filmic, denoise: true}\n";
+constexpr std::string_view kVideo = "  - {file: <NAME>.mp4, tone_map: filmic, denoise: true}\n";
 
 std::string replaced(std::string text, std::string_view what, std::string_view with) {
   for (size_t at = text.find(what); at != std::string::npos;
@@ -80,13 +81,13 @@ std::string render_of(const std::string& file) {
 std::string job_of(const std::filesystem::path& file, bool animated) {
   std::string text(kJob);
   if (animated) text += kVideo;
-  text = replaced(text, "FRAMES",
+  text = replaced(text, "<FRAMES>",
                   animated ? "frames: {range: 1-48, fps: 24, shutter: 0.5}"
                            : "# frames: {range: 1-48, fps: 24}  # of an animation");
-  text = replaced(text, "TURN", animated ? "\"= 45 * t\"" : "30");
-  text = replaced(text, "MARKS", animated ? ".####" : "");
-  text = replaced(text, "NAME", core::valid_name(file.stem().string()));
-  return replaced(text, "COMMAND", render_of(file.filename().string()));
+  text = replaced(text, "<TURN>", animated ? "\"= 45 * t\"" : "30");
+  text = replaced(text, "<MARKS>", animated ? ".####" : "");
+  text = replaced(text, "<NAME>", core::valid_name(file.stem().string()));
+  return replaced(text, "<COMMAND>", render_of(file.filename().string()));
 }
 
 }  // namespace
@@ -108,6 +109,11 @@ int new_command(int argc, char** argv) {
   const std::string extension = core::file_extension(file);
   if (extension != ".yaml" && extension != ".yml") {
     std::fprintf(stderr, "hyades new: %s: expected NAME.yaml\n", core::printable(file).c_str());
+    return kExitRefused;
+  }
+  if (core::printable(file) != file) {
+    std::fprintf(stderr, "hyades new: %s: expected a name of UTF-8 without control characters\n",
+                 core::printable(file).c_str());
     return kExitRefused;
   }
   if (const auto may = written.check(file); !may) {

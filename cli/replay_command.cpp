@@ -28,7 +28,7 @@ int replay_command(int argc, char** argv) {
   int32_t frame = 0;
   std::vector<int> pixel;
   uint32_t sample = 0;
-  app.add_option("job", path, "the job (.yaml), or a scene or mesh (.glb, ...)")->required();
+  app.add_option("job", path, job_words())->required();
   declare_scene_options(app, scene_options);
   auto* frame_option = app.add_option("--frame", frame, "frame number (default: the job's first)");
   add_whole_numbers(app, "--pixel", pixel, "X,Y", "in full-frame pixels, 0,0 is the top left")

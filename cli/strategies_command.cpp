@@ -104,7 +104,7 @@ int strategies_command(int argc, char** argv) {
   std::string path;
   SceneOptions scene_options;
   uint32_t samples = 0;
-  app.add_option("job", path, "the job (.yaml), or a scene or mesh (.glb, ...)")->required();
+  app.add_option("job", path, job_words())->required();
   declare_scene_options(app, scene_options);
   auto* frame = app.add_option("--frame", options.frame, "frame number (default: the job's first)");
   app.add_option("--events", options.events, "most scattering events")

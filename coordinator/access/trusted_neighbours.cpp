@@ -28,7 +28,7 @@ void TrustedNeighbours::trust(const std::string& neighbourhood, const std::strin
     const OfToken& of = tokens_.at(token);
     return of.now.size() + of.before.size();
   };
-  shown.erase(std::max_element(shown.begin(), shown.end(), [&](const auto& a, const auto& b) {
+  shown.erase(std::max_element(shown.begin(), shown.end() - 1, [&](const auto& a, const auto& b) {
     return places_of(a) < places_of(b);
   }));
 }

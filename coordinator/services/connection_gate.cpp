@@ -276,7 +276,7 @@ void ConnectionGate::hear(Id id, uint32_t events, Time now) {
   } else if ((events & (EPOLLHUP | EPOLLRDHUP)) != 0) {
     // A farm's machines stay for days, and may all come back at once.
     const auto found = connections_.find(id);
-    if (found != connections_.end() && found->second.known &&
+    if (found != connections_.end() && found->second.known && found->second.calls == 0 &&
         !found->second.neighbourhood.empty()) {
       strangers_.trust(found->second.neighbourhood, found->second.token_id, now);
     }

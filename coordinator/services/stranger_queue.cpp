@@ -87,6 +87,13 @@ void StrangerQueue::know(Id id, const std::string& token_id, Time now) {
   leave(id);
 }
 
+void StrangerQueue::trust(const std::string& neighbourhood, const std::string& token_id, Time now) {
+  trusted_.trust(neighbourhood, token_id, now);
+  // Who comes again after a break of the network is here before the end of his old connection.
+  const auto of = neighbourhoods_.find(neighbourhood);
+  if (of != neighbourhoods_.end() && rank_of(of->second) != Rank::own) join_best_token(of);
+}
+
 void StrangerQueue::leave(Id id) {
   const auto found = strangers_.find(id);
   if (found == strangers_.end()) return;

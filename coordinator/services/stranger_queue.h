@@ -65,9 +65,7 @@ class StrangerQueue {
   /// turn. Nothing where this one was not there.
   void know(Id id, const std::string& token_id, Time now);
   /// Somebody of there, who is none of our own user's, is still known by the token of this id.
-  void trust(const std::string& neighbourhood, const std::string& token_id, Time now) {
-    trusted_.trust(neighbourhood, token_id, now);
-  }
+  void trust(const std::string& neighbourhood, const std::string& token_id, Time now);
   /// One has gone, and its place is free at once; nothing where this one was not there.
   void leave(Id id);
   /// One has gone. Who was inside leaves its place empty for as long as it might have been there

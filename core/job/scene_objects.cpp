@@ -135,10 +135,11 @@ class Expander {
       }
     }
     if (file.value->kind != Kind::scalar || !has_extension(file.value->scalar, row)) {
+      const std::string hint =
+          std::string_view(row.key) == "gltf" ? hint_for_scene_file(file.value->scalar) : "";
       diagnostics_.add(file.value->where, std::string(row.key) + " is " + describe(*file.value) +
                                               ", expected a file whose name ends in " +
-                                              row.extensions[0] +
-                                              hint_for_scene_file(file.value->scalar));
+                                              row.extensions[0] + hint);
       return std::nullopt;
     }
     SceneDocument wanted;

@@ -300,12 +300,12 @@ TEST(StrangerQueue, WhoGoesAfterDaysIsTrusted) {
   for (const char* name : {"stays", "gone"}) known(name, kBegin);
   for (int day = 1; day < 4; ++day) known("others", kBegin + day * 25h);
   const auto now = kBegin + 80h;
-  queue.trust("stays", "a token", now);
   for (int address = 0; address < 100; ++address) queue.come(next++, std::to_string(address));
   ASSERT_EQ(let_in_all(queue, now).size(), 16U);
-  queue.come(next, "gone");
+  queue.come(next++, "gone");
+  queue.come(next, "stays");
   EXPECT_TRUE(let_in_all(queue, now).empty());
-  queue.come(++next, "stays");
+  queue.trust("stays", "a token", now);  // its old connection ends after the new one has come
   EXPECT_EQ(let_in_all(queue, now), Ids{next});
 }
 
