@@ -8,7 +8,7 @@ from typing import Any
 
 import hyades
 import numpy
-from hyades import Keys, MeshData
+from hyades import Keys, MeshData, materials
 from hyades.described import Described, Key
 
 from . import moving_transform
@@ -46,19 +46,20 @@ class _Join:
         self._moments = list(moments)
         self._own = [at for at, frame in enumerate(of_frames) if frame is not None]
         self._frames = [frame for frame in of_frames if frame is not None]
-        self._made: dict[int, Any] = {}  # by the first moment's thing: others may name it
+        self._made: dict[tuple[int, ...], Any] = {}  # by what they are at each moment: others may name them
+        self._is_lamp = False  # the object that is joined
         self.complaints: list[Complaint] = []
 
     def described(self, things: list[Any], where: str, blurs: bool = False) -> Any:
         """Things of one kind as one. `blurs`: all of it moves while the shutter is open."""
-        first = things[0]
-        if id(first) in self._made:
-            return self._made[id(first)]
+        first, those = things[0], tuple(map(id, things))
+        if those in self._made:
+            return self._made[those]
         if all(_same(first, thing) for thing in things[1:]) and not isinstance(first, hyades.Job):
-            self._made[id(first)] = first
+            self._made[those] = first
             return first
         made = type(first)()
-        self._made[id(first)] = made
+        self._made[those] = made
         for name, key in type(first).keys().items():
             if name == "frames":
                 made.frames = first.frames
@@ -75,9 +76,9 @@ class _Join:
         if all(_same(first, value) for value in values[1:]):
             return self.described(values, where, blurs) if isinstance(first, Described) else first
         if key.takes == "list of steps":
-            return self._steps(values, where)
+            return self._steps(key, values, where)
         if key.name == "emit":
-            values = _shining(values)
+            values = _shining(values, self._moments)
         values = [default if value is None else value for value in values]
         first = values[0]
         if isinstance(first, Described) and all(type(value) is type(first) for value in values):
@@ -87,23 +88,28 @@ class _Join:
         if isinstance(first, (list, tuple)) and all(isinstance(v, (list, tuple)) for v in values):
             if len({len(value) for value in values}) == 1 and all(isinstance(v, Described) for v in first):
                 return [self._value(key, list(column), where, None, blurs) for column in zip(*values)]
-        held, moments = (values, self._moments) if blurs else ([values[at] for at in self._own], self._frames)
-        if all(_same(held[0], value) for value in held[1:]):
-            return held[0]
-        if "animated" in key.takes or key.takes.startswith(("colour or", "number or")):
-            if all(_is_plain(value) for value in held):
-                return self._keys(held, moments)
+        held = self._at_own_times(values)
+        for some, moments in [(values, self._moments)] * blurs + [(held, self._frames)]:
+            if all(_same(some[0], value) for value in some[1:]):
+                return some[0]
+            if "animated" in key.takes or key.takes.startswith(("colour or", "number or")):
+                if all(_is_plain(value) for value in some):
+                    return self._keys(some, moments)
         return self._complain(where, held[0])
 
-    def _keys(self, values: list[Any], moments: Sequence[float] = ()) -> Keys:
-        """Values by moment (empty: by all of them), without those that lie between equal ones."""
+    def _at_own_times(self, values: list[Any]) -> list[Any]:
+        """Of a value for each moment those of the frames' own."""
+        return [values[at] for at in self._own]
+
+    def _keys(self, values: list[Any], moments: Sequence[float]) -> Keys:
+        """Values by moment, without those that lie between equal ones."""
         if any(isinstance(value, (list, tuple)) for value in values):
             width = max(len(value) for value in values if isinstance(value, (list, tuple)))
             values = [list(v) if isinstance(v, (list, tuple)) else [v] * width for v in values]
         last = len(values) - 1
         kept = {
             moment: value
-            for at, (moment, value) in enumerate(zip(moments or self._moments, values))
+            for at, (moment, value) in enumerate(zip(moments, values))
             if at in (0, last) or not (values[at - 1] == value == values[at + 1])
         }
         return Keys(kept)
@@ -113,16 +119,26 @@ class _Join:
         is made where it is not there."""
         by_time = dict(zip(self._moments, meshes))
         by_frame = {int(m): mesh for m, mesh in by_time.items() if float(m).is_integer()}
+        for frame, own in zip(self._frames, self._at_own_times(meshes)):
+            during = [mesh for m, mesh in by_time.items() if frame <= m < frame + 1]
+            if any(not numpy.array_equal(mesh.triangles, own.triangles) for mesh in during):
+                by_frame[frame] = own  # another one each time: it stands still
         for frame, mesh in list(by_frame.items()):
             closes = [m for m in by_time if frame < m < frame + 1]
             if closes and frame + 1 not in by_frame:
                 by_frame[frame + 1] = _onwards(mesh, by_time[closes[-1]], closes[-1] - frame)
         return by_frame
 
-    def _steps(self, values: list[Any], where: str) -> Any:
+    def _steps(self, key: Key, values: list[Any], where: str) -> Any:
         """A transform that moves. None: it does nothing."""
-        moving = moving_transform.joined(values, self._keys)
-        return self._complain(where, values[0]) if moving is None else moving
+        held = self._at_own_times(values)
+        if key.owner == "Object" and not self._is_lamp:
+            moving = moving_transform.joined(values, lambda some: self._keys(some, self._moments))
+        elif all(_same(held[0], value) for value in held[1:]):
+            return held[0]
+        else:  # lamps that have an area are objects, which stand still while the shutter is open
+            moving = moving_transform.joined(held, lambda some: Keys(dict(zip(self._frames, some)), ease="step"))
+        return self._complain(where, held[0]) if moving is None else moving
 
     def _entries(self, values: list[Any], section: str) -> dict[str, Any]:
         """A section: its things by name. What is not there all the time is made tiny or dark meanwhile."""
@@ -138,7 +154,9 @@ class _Join:
                 made[name] = self._complain(where, present[0])
                 continue
             there = [thing if type(thing) is type(present[0]) else None for thing in there]
-            made[name] = self.described([_nearest(there, at) for at in range(len(there))], where)
+            self._is_lamp = section == "objects" and isinstance(present[0].__dict__.get("material"), materials.NullMaterial)
+            made[name] = self.described([_nearest(there, self._moments, at) for at in range(len(there))], where)
+            self._is_lamp = False
             if len(present) < len(self._own):
                 self._come_and_go(made[name], [there[at] is not None for at in self._own], section, where)
         return made
@@ -165,18 +183,18 @@ class _Join:
         return value
 
 
-def _nearest(things: list[Any], at: int) -> Any:
+def _nearest(things: list[Any], moments: Sequence[float], at: int) -> Any:
     """What is there at this moment, else at the nearest one."""
-    near = sorted(range(len(things)), key=lambda other: abs(other - at))
+    near = sorted(range(len(things)), key=lambda other: abs(moments[other] - moments[at]))
     return next(things[other] for other in near if things[other] is not None)
 
 
-def _shining(values: list[Any]) -> list[Any]:
+def _shining(values: list[Any], moments: Sequence[float]) -> list[Any]:
     """What things shine at each moment: where they do not, as at the nearest one at which they do, but dark."""
     filled = []
     for at, value in enumerate(values):
         if value is None:
-            value = copy(_nearest(values, at))
+            value = copy(_nearest(values, moments, at))
             for name in ("radiance", "power"):
                 if value.__dict__.get(name) is not None:
                     setattr(value, name, 0.0)

@@ -12,8 +12,6 @@ from .exr import encode_exr, read_exr
 from .png import decode_png, encode_png
 
 Array = Any
-
-
 _KINDS = {("f", 2), ("f", 4), ("f", 8), ("u", 1), ("u", 2)}
 
 
@@ -22,12 +20,12 @@ class Picture:
     (uint8, uint16) codes of sRGB. Notebooks show it; in a job it can be the file of a texture."""
 
     def __init__(self, array: Array) -> None:
-        self.array = numpy.asarray(array)
-        if self.array.ndim not in (2, 3) or self.array.shape[2:] not in ((), (1,), (2,), (3,), (4,)):
-            raise ValueError(f"an array of the shape {self.array.shape} is no picture")
-        kind = self.array.dtype
-        if not 0 < self.array.size or (kind.kind, kind.itemsize) not in _KINDS:
-            raise ValueError(f"an array of {self.array.dtype} is no picture: expected floats, uint8 or uint16")
+        array = numpy.asarray(array)
+        if array.ndim not in (2, 3) or array.shape[2:] not in ((), (1,), (2,), (3,), (4,)) or array.size == 0:
+            raise ValueError(f"an array of the shape {array.shape} is no picture")
+        if (array.dtype.kind, array.dtype.itemsize) not in _KINDS:
+            raise ValueError(f"an array of {array.dtype} is no picture: expected floats, uint8 or uint16")
+        self.array = array.astype(array.dtype.newbyteorder("="), copy=False)
 
     @classmethod
     def read(cls, path: str | os.PathLike[str], layer: str = "beauty") -> Picture:

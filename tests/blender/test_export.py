@@ -229,7 +229,6 @@ class Moving(ExportTest):
         self.assertEqual((opacity[1], round(opacity[2], 3), opacity[3]), (0, 0.5, 1))
         self.assertEqual(job.objects["Other"].material.color, [0.5, 0.5, 0.5])
 
-
     def test_what_a_shutter_does_not_blur_is_as_at_its_frame(self) -> None:
         self.scene.render.use_motion_blur, self.scene.render.motion_blur_shutter = True, 0.5
         lamp, cube = bpy.data.lights["Light"], bpy.data.objects["Cube"]

@@ -102,6 +102,8 @@ class WholeFarm(unittest.TestCase):
         self.assertEqual(self.farm.find("forest").frames, 3)
         with self.assertRaisesRegex(ValueError, "not 'forest'; Farm.find"):
             self.farm.job("forest")
+        number = self.farm.find("forest").id
+        self.assertEqual(self.farm.job(str(number)).name, "forest")
 
     def test_jobs_are_steered_and_looked_at(self) -> None:
         job = self.farm.submit(scene())

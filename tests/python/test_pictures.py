@@ -60,7 +60,8 @@ class Codes(unittest.TestCase):
             picture.exposed(1)
         with tempfile.TemporaryDirectory() as folder, self.assertRaisesRegex(ValueError, "expected a file .png"):
             picture.save(pathlib.Path(folder) / "a.exr")
-        for wrong in (numpy.zeros((2, 2, 5)), numpy.zeros((2, 2), "int64"), numpy.array([["a"]])):
+        self.assertEqual(hyades.Picture(numpy.full((1, 1), 300, ">u2")).array.dtype, numpy.uint16)
+        for wrong in (numpy.zeros((0, 0, 3)), numpy.zeros((2, 2, 5)), numpy.zeros((2, 2), "int64"), numpy.array([["a"]])):
             with self.assertRaisesRegex(ValueError, "is no picture"):
                 hyades.Picture(wrong)
 

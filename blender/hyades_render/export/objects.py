@@ -198,7 +198,7 @@ def pieces_of(context: Context, object: Any, matrix: Any, origin: Origin) -> lis
         parts = [PartOfSurface(surface, slots == slot if len(kinds) > 1 else slice(None)) for slot in kinds]
         try:
             found = [_piece(context, one, _material_in(context, object, int(slot))) for one, slot in zip(parts, kinds)]
-            _tell_of_panes(context, object, mesh, found)
+            _tell_of_panes(context, object, mesh, [slot for one, slot in zip(found, kinds) if _is_glass(one.body.material)])
         except ValueError as error:  # of a mesh that the job refuses: it has numbers that are none, say
             context.complain(f"object '{object.name}'", f"its mesh is left out: {error}")
             return []
@@ -219,13 +219,18 @@ def _piece(context: Context, whole: PartOfSurface, data: Any) -> Piece:
     return Piece(body, made, whole.is_of_object)
 
 
-def _tell_of_panes(context: Context, object: Any, mesh: Any, pieces: list[Piece]) -> None:
-    """Complains of a mesh of glass that has no inside: light that gets into glass is denser for the job, not for Cycles."""
-    if not any(_is_glass(piece.body.material) for piece in pieces):
+def _tell_of_panes(context: Context, object: Any, mesh: Any, of_glass: list[Any]) -> None:
+    """Complains of glass that has no inside: light that gets into glass is denser for the job, not for Cycles. `of_glass`:
+    slots of the mesh."""
+    if not of_glass:
         return
     edges = numpy.empty(len(mesh.loops), "int32")
     mesh.loops.foreach_get("edge_index", edges)
-    if (numpy.bincount(edges) == 1).any():
+    slots, sides = (numpy.empty(len(mesh.polygons), "int32") for _ in range(2))
+    mesh.polygons.foreach_get("material_index", slots)
+    mesh.polygons.foreach_get("loop_total", sides)
+    is_rim = numpy.bincount(edges) == 1
+    if is_rim[edges[numpy.repeat(numpy.isin(slots, of_glass), sides)]].any():
         what = "glass without an inside is brighter or darker than in Cycles: give it a thickness (Solidify)"
         context.complain(f"object '{object.name}'", what)
 

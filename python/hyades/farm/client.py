@@ -331,11 +331,11 @@ class Farm:
 
 def _id(thing: Any) -> int:
     number = getattr(thing, "id", thing)
-    try:
-        return int(number) if isinstance(number, str) else index(number)
-    except (TypeError, ValueError):
-        words = f"expected a job or worker, or its number, not {number!r}; Farm.find() finds jobs by name"
-        raise ValueError(words) from None
+    if isinstance(number, str) and number.isdecimal():
+        return int(number)
+    if hasattr(number, "__index__") and not isinstance(number, bool):
+        return index(number)
+    raise ValueError(f"expected a job or worker, or its number, not {number!r}; Farm.find() finds jobs by name")
 
 
 def _path(job: JobId, below: str = "") -> str:

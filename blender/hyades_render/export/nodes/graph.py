@@ -58,8 +58,12 @@ def is_taken(output: Output) -> bool:
                 continue
             to = link.to_node
             if to.type.startswith("OUTPUT_"):
-                return True
-            if to.type == "GROUP_OUTPUT" and groups:
+                if to.is_active_output and to.target in ("ALL", "CYCLES"):
+                    return True
+            elif to.mute:
+                ways = [way.to_socket for way in to.internal_links if way.from_socket == link.to_socket]
+                waiting += [Output(to, end, groups) for end in ways]
+            elif to.type == "GROUP_OUTPUT" and groups:
                 waiting += [Output(groups[-1], end, groups[:-1]) for end in [_same(groups[-1].outputs, link.to_socket)] if end]
             elif to.type == "GROUP" and to.node_tree is not None:
                 begins = [_same(n.outputs, link.to_socket) for n in to.node_tree.nodes if n.type == "GROUP_INPUT"]
