@@ -227,7 +227,8 @@ class Scenes(AddOnTest):
         made.node_tree.links.new(magic.outputs["Color"], nodes["Principled BSDF"].inputs["Base Color"])
         self.scene.hyades.bake_size = 128
         exported = animation.job_of(self.scene, frames=None, name="baked")
-        self.assertEqual(exported.job.objects["Cube"].material.base_color.input.file.shape, (128, 128, 3))
+        color = exported.job.objects["Cube"].material.base_color
+        self.assertEqual(getattr(color, "input", color).file.shape, (128, 128, 3))  # of Principled until 3.6 it is scaled
         self.assertEqual(exported.complaints, [])
         self.scene.hyades.bake = False
         exported = animation.job_of(self.scene, frames=None, name="mean")
