@@ -74,8 +74,7 @@ std::string replaced(std::string text, std::string_view what, std::string_view w
 
 /// The command that renders a file, as it is typed.
 std::string render_of(const std::string& file) {
-  return "hyades render " +
-         core::printable(core::shell_word(file.front() == '-' ? "./" + file : file));
+  return "hyades render " + core::shell_word(file.front() == '-' ? "./" + file : file);
 }
 
 std::string job_of(const std::filesystem::path& file, bool animated) {

@@ -201,8 +201,7 @@ def _after_render(scene: Any) -> list[Complaint]:
     strips = getattr(editor, "strips", None) or getattr(editor, "sequences", ())  # since Blender 4.4, and before
     if render.use_sequencer and len(strips):
         found.append(Complaint("output", "strips of the sequencer are left out: the scene is rendered"))
-    layer = next(layer for layer in scene.view_layers if layer.use)
-    if render.use_freestyle and layer.use_freestyle:
+    if render.use_freestyle and scene.view_layers[layers[0]].use_freestyle:
         found.append(Complaint("output", "the lines of Freestyle are left out"))
     if render.use_border and not render.use_crop_to_border:
         words = "pictures have the size of the render region: what Blender leaves black around it is not there"

@@ -89,7 +89,8 @@ class _Join:
             if len({len(value) for value in values}) == 1 and all(isinstance(v, Described) for v in first):
                 return [self._value(key, list(column), where, None, blurs) for column in zip(*values)]
         held = self._at_own_times(values)
-        for some, moments in [(values, self._moments)] * blurs + [(held, self._frames)]:
+        ways = [(held, self._frames)] if not blurs else [(values, self._moments), (held, self._frames)]
+        for some, moments in ways:
             if all(_same(some[0], value) for value in some[1:]):
                 return some[0]
             if "animated" in key.takes or key.takes.startswith(("colour or", "number or")):

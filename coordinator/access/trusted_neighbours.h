@@ -24,8 +24,7 @@ class TrustedNeighbours {
   void trust(const std::string& neighbourhood, const std::string& token_id, Time now);
   /// The tokens that were shown from there, but four at most: the last, and those of fewest
   /// neighbourhoods. Those that somebody shows from an address that he shares with others take
-  /// nothing from theirs. Good
-  /// until trust() is called.
+  /// nothing from theirs. Good until trust() is called.
   const std::vector<std::string>& tokens_of(const std::string& neighbourhood) const;
 
  private:

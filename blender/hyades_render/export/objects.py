@@ -236,8 +236,9 @@ def _tell_of_panes(context: Context, object: Any, mesh: Any, of_glass: list[Any]
 
 
 def _is_glass(material: Any) -> bool:
-    through = getattr(material, "transmission", 0) if isinstance(material, materials.Principled) else 0
-    return isinstance(material, materials.Dielectric) or not values.is_constant(through, 0)
+    if isinstance(material, materials.Principled):
+        return not values.is_constant(material.transmission, 0)
+    return isinstance(material, materials.Dielectric)
 
 
 def _material_in(context: Context, object: Any, slot: int) -> Optional[Any]:

@@ -55,7 +55,7 @@ def image_file(translator: Translator, node: Any, output: Output) -> ImageFile:
         return ImageFile(path, space, False)
     if image.source not in ("FILE", "GENERATED"):
         raise Inexpressible(output, f"images of source {image.source.lower()} are not supported")
-    if image.is_dirty or image.source == "GENERATED" or not is_as_in_file(output, translator.context):
+    if not is_as_in_file(output, translator.context):
         return ImageFile(_array(translator, output), "linear", False)
     if image.packed_file is not None:
         end = os.path.splitext(path)[1].lower()

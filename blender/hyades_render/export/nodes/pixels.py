@@ -46,9 +46,11 @@ def asks_for_alpha(output: Output) -> bool:
 
 
 def is_as_in_file(output: Output, context: Any) -> bool:
-    """Whether Cycles sees the colours that the node's image has in its file."""
+    """Whether the node's image has a file that Cycles sees the colours of."""
     image = output.node.image
-    if image.source != "FILE" or not has_alpha(image):
+    if image.is_dirty or image.source == "GENERATED":
+        return False
+    if not has_alpha(image):
         return True
     other = "STRAIGHT" if _is_exr(image) else "PREMUL"
     if asks_for_alpha(output) != _is_exr(image) and not (_is_kept_by_blender(image) and image.alpha_mode == other):
@@ -89,14 +91,14 @@ def _encoded(light: Array) -> Array:
 
 def _power(output: Output, is_codes: bool) -> int:
     """Of alpha: with it as a factor, what Blender holds is what Cycles sees."""
-    image = output.node.image
-    power = 0
-    if not _is_kept_by_blender(image):  # back to what the file says
-        power += {"STRAIGHT": 0, "PREMUL": 1}[image.alpha_mode] if is_codes else {"STRAIGHT": -1, "PREMUL": 0}[image.alpha_mode]
-        power += 0 if is_codes or _is_exr(image) else 1
-    if is_codes:
-        return power if asks_for_alpha(output) else power + 1
-    return power - 1 if asks_for_alpha(output) else power
+    image, asked = output.node.image, asks_for_alpha(output)
+    is_straight, is_kept = image.alpha_mode == "STRAIGHT", _is_kept_by_blender(image)
+    if is_codes:  # apart in Blender
+        in_file = 0 if is_straight or is_kept else 1
+        return in_file + (0 if asked else 1)
+    in_file = -1 if is_straight and not is_kept else 0
+    by_cycles = 0 if is_kept or _is_exr(image) else 1
+    return in_file + by_cycles - (1 if asked else 0)
 
 
 def _times(color: Array, alpha: Array, power: int) -> Array:
