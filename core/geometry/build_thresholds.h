@@ -20,9 +20,9 @@ struct BuildThresholds {
   size_t shared_triangles = size_t{1} << 14;
 };
 
-/// build_world with thresholds of one's own. Bits depend on them.
+/// build_world with thresholds of one's own. The bits of the native class depend on them.
 Result<std::shared_ptr<const World>> build_world(std::vector<Placement> placements,
-                                                 GeometryCache& cache,
+                                                 GeometryCache& cache, RenderClass which,
                                                  const BuildThresholds& thresholds);
 
 }  // namespace hyades::core

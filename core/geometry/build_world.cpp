@@ -12,14 +12,14 @@
 #include "core/base/fp_mode.h"
 #include "core/base/mutex.h"
 #include "core/geometry/build_thresholds.h"
-#include "core/geometry/embree_geometry.h"
-#include "core/geometry/embree_world.h"
+#include "core/geometry/embree.h"
+#include "core/geometry/geometry_cache.h"
+#include "core/geometry/placed_world.h"
 #include "core/geometry/placement_check.h"
+#include "core/geometry/ray_scene.h"
 
 namespace hyades::core {
 namespace {
-
-constexpr unsigned kAllRays = 0xFFFFFFFFU;
 
 unsigned mask_of(const Placement& p) {
   auto mask = static_cast<unsigned>(RayKind::other);
@@ -99,22 +99,21 @@ std::shared_ptr<const PlacedObject> make_direct(Placement p) {
 
 void attach_direct(SceneBuilder& builder, const PlacedObject& object, uint32_t number) {
   const unsigned mask = mask_of(object.placement());
-  builder.attach(object.is_quadric() ? new_quadric_geometry(builder.device(), object, mask)
-                                     : new_mesh_geometry(builder.device(), *object.buffers(), mask),
-                 number);
+  if (object.is_quadric()) return builder.add_quadric(object, mask, number);
+  builder.add_mesh(*object.buffers(), mask, number);
 }
 
 /// Builds worlds with the help of one cache, whose lock somebody holds.
 class WorldBuilder {
  public:
-  explicit WorldBuilder(MadeGeometry& cache) : cache_(cache) {}
+  WorldBuilder(MadeGeometry& cache, RenderClass which) : cache_(cache), which_(which) {}
 
   Result<std::shared_ptr<const World>> build(std::vector<Placement> placements,
                                              const BuildThresholds& thresholds) {
     auto world = build_parts(std::move(placements), thresholds);
     if (!world) return world.error();
     remember();
-    return std::shared_ptr<const World>(std::make_shared<EmbreeWorld>(std::move(parts_)));
+    return std::shared_ptr<const World>(std::make_shared<PlacedWorld>(std::move(parts_)));
   }
 
  private:
@@ -174,12 +173,12 @@ class WorldBuilder {
     // near a copy would be transformed once more.
     const BuildThresholds all_direct{std::numeric_limits<size_t>::max(),
                                      std::numeric_limits<size_t>::max()};
-    WorldBuilder builder(cache_);
+    WorldBuilder builder(cache_, which_);
     builder.inside_instancer_ = true;
     if (Status s = builder.build_parts(members, all_direct); !s) return s.error();
-    const auto inner = std::make_shared<const EmbreeWorld>(std::move(builder.parts_));
+    const auto inner = std::make_shared<const PlacedWorld>(std::move(builder.parts_));
     auto scene = std::make_shared<InstancerScene>(instancer, members, inner);
-    if (Status s = scene->build(); !s) return s.error();
+    if (Status s = scene->build(*make_scene_builder(which_)); !s) return s.error();
     cache_.instancers.push_back(scene);
     return std::shared_ptr<const InstancerScene>(std::move(scene));
   }
@@ -195,9 +194,9 @@ class WorldBuilder {
     if (parts_.still != nullptr && is_made_of(*parts_.still, placements, numbers)) return {};
     auto fresh = std::make_shared<StillScene>();
     for (const uint32_t i : numbers) fresh->objects.push_back({i, make_direct(placements[i])});
-    SceneBuilder builder;
-    for (const NumberedObject& o : fresh->objects) attach_direct(builder, *o.object, o.number);
-    auto scene = builder.commit();
+    const auto builder = make_scene_builder(which_);
+    for (const NumberedObject& o : fresh->objects) attach_direct(*builder, *o.object, o.number);
+    auto scene = builder->commit();
     if (!scene) return scene.error();
     fresh->scene = *scene;
     cache_.still = fresh;
@@ -221,15 +220,15 @@ class WorldBuilder {
       return found;
     }
     auto fresh = std::make_shared<MeshScene>();
-    SceneBuilder builder;
+    const auto builder = make_scene_builder(which_);
     if (mesh.kind == Shape::Kind::curves) {
       fresh->curves = mesh.curves;
-      builder.attach(new_curve_geometry(builder.device(), *fresh->curves, kAllRays), 0);
+      builder->add_curves(*fresh->curves, kAllRays, 0);
     } else {
       fresh->buffers = make_mesh_buffers(mesh, nullptr);
-      builder.attach(new_mesh_geometry(builder.device(), *fresh->buffers, kAllRays), 0);
+      builder->add_mesh(*fresh->buffers, kAllRays, 0);
     }
-    auto scene = builder.commit();
+    auto scene = builder->commit();
     if (!scene) return scene.error();
     fresh->scene = *scene;
     known = fresh;
@@ -240,28 +239,23 @@ class WorldBuilder {
 
   Status build_top(const std::vector<Way>& ways,
                    const std::vector<std::shared_ptr<const MeshScene>>& instanced) {
-    SceneBuilder builder;
+    const auto builder = make_scene_builder(which_);
     for (size_t i = 0; i < ways.size(); ++i) {
       const PlacedObject& object = *parts_.objects[i];
       const auto number = static_cast<uint32_t>(i);
-      if (ways[i] == Way::direct) attach_direct(builder, object, number);
+      if (ways[i] == Way::direct) attach_direct(*builder, object, number);
       if (ways[i] == Way::instance) {
-        builder.attach(new_instance_geometry(builder.device(), instanced[i]->scene->handle(),
-                                             object.motion(), mask_of(object.placement())),
-                       number);
+        builder->add_instance(*instanced[i]->scene, object, mask_of(object.placement()), number);
       }
     }
     if (parts_.still != nullptr) {
-      builder.attach(new_instance_geometry(builder.device(), parts_.still->scene->handle(),
-                                           Motion(), kAllRays),
-                     static_cast<uint32_t>(ways.size()));
+      builder->add_scene(*parts_.still->scene, static_cast<uint32_t>(ways.size()));
     }
     for (size_t i = 0; i < parts_.instancers.size(); ++i) {
-      builder.attach(new_instance_geometry(builder.device(), parts_.instancers[i].scene->scene(),
-                                           Motion(), kAllRays),
-                     static_cast<uint32_t>(ways.size() + 1 + i));
+      builder->add_scene(parts_.instancers[i].scene->scene(),
+                         static_cast<uint32_t>(ways.size() + 1 + i));
     }
-    auto top = builder.commit();
+    auto top = builder->commit();
     if (!top) return top.error();
     parts_.top = *top;
     return {};
@@ -279,6 +273,7 @@ class WorldBuilder {
   }
 
   MadeGeometry& cache_;
+  RenderClass which_;
   bool inside_instancer_ = false;  ///< what is built is what a instancer copies
   WorldParts parts_;
   std::set<const MeshScene*> used_;  ///< those in parts_.mesh_scenes
@@ -299,14 +294,16 @@ GeometryCache::GeometryCache() : state_(std::make_unique<State>()) {}
 GeometryCache::~GeometryCache() = default;
 
 Result<std::shared_ptr<const World>> build_world(std::vector<Placement> placements,
-                                                 GeometryCache& cache) {
-  return build_world(std::move(placements), cache, BuildThresholds());
+                                                 GeometryCache& cache, RenderClass which) {
+  return build_world(std::move(placements), cache, which, BuildThresholds());
 }
 
 Result<std::shared_ptr<const World>> build_world(std::vector<Placement> placements,
-                                                 GeometryCache& cache,
+                                                 GeometryCache& cache, RenderClass which,
                                                  const BuildThresholds& thresholds) {
-  if (const auto device = embree_device(); !device) return device.error();
+  if (which == RenderClass::native) {
+    if (const auto device = embree_device(); !device) return device.error();
+  }
   for (size_t i = 0; i < placements.size(); ++i) {
     if (Status s = check_placement(placements[i]); !s) {
       return s.error().in(describe_placement(placements[i], i));
@@ -315,7 +312,8 @@ Result<std::shared_ptr<const World>> build_world(std::vector<Placement> placemen
   const FpMode mode;
   GeometryCache::State& state = cache.state();
   const MutexLock lock(state.mutex);
-  return WorldBuilder(state.made).build(std::move(placements), thresholds);
+  MadeGeometry& made = which == RenderClass::native ? state.native : state.portable;
+  return WorldBuilder(made, which).build(std::move(placements), thresholds);
 }
 
 }  // namespace hyades::core

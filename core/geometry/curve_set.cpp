@@ -42,7 +42,7 @@ std::array<glm::dvec4, 4> hull_of(const CurvePiece& p) {
   return {a, a + b, a + 2.0 * b + c, a + 3.0 * b + 3.0 * c + coefficient(3)};
 }
 
-Bounds bounds_of(const CurvePiece& piece) {
+Bounds tube_bounds(const CurvePiece& piece) {
   Bounds b;
   for (const glm::dvec4& h : hull_of(piece)) {
     const auto r =
@@ -111,6 +111,8 @@ CurvePiece CurveSet::piece(uint32_t index) const {
   return out;
 }
 
+Bounds CurveSet::bounds_of(uint32_t piece) const { return tube_bounds(this->piece(piece)); }
+
 float CurveSet::along_strand(uint32_t piece, float u) const {
   const auto after = std::upper_bound(strands.begin(), strands.end(), piece);
   const uint32_t first = *(after - 1);
@@ -170,7 +172,7 @@ Result<std::shared_ptr<CurveSet>> make_curve_set(const StrandList& list, CurveBa
     first += size;
   }
   set->strands.push_back(static_cast<uint32_t>(set->pieces.size()));
-  for (uint32_t i = 0; i < set->pieces.size(); ++i) set->bounds.include(bounds_of(set->piece(i)));
+  for (uint32_t i = 0; i < set->pieces.size(); ++i) set->bounds.include(set->bounds_of(i));
   return set;
 }
 

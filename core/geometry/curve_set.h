@@ -51,6 +51,7 @@ struct CurveSet {
   Bounds bounds;                  ///< of the tubes
 
   CurvePiece piece(uint32_t index) const;
+  Bounds bounds_of(uint32_t piece) const;  ///< of its tube
   size_t strand_count() const { return strands.size() - 1; }
 
   /// How far along its strand the place `u` (0..1) of a piece is: 0 at the root, 1 at the tip.

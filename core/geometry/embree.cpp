@@ -1,9 +1,14 @@
 #include "core/geometry/embree.h"
 
+#include <algorithm>
 #include <atomic>
+#include <bit>
+#include <cstdint>
+#include <optional>
 #include <utility>
 
 #include "core/base/fp_mode.h"
+#include "core/geometry/embree_geometry.h"
 #include "core/geometry/isa.h"
 
 namespace hyades::core {
@@ -66,6 +71,27 @@ const Device& device() {
   return made;
 }
 
+RTCRay to_embree(const Ray& ray, RayKind kind, float t_min) {
+  RTCRay r;
+  r.org_x = ray.origin.x;
+  r.org_y = ray.origin.y;
+  r.org_z = ray.origin.z;
+  r.tnear = t_min;
+  r.dir_x = ray.direction.x;
+  r.dir_y = ray.direction.y;
+  r.dir_z = ray.direction.z;
+  r.time = std::clamp(ray.time, 0.0F, 1.0F);
+  r.tfar = ray.t_max;
+  r.mask = static_cast<unsigned>(kind);
+  r.id = 0;
+  r.flags = 0;
+  return r;
+}
+
+RTCScene handle_of(const RayScene& scene) {
+  return static_cast<const EmbreeScene&>(scene).handle();
+}
+
 Error no_device() {
   return {"Embree " + embree_version() +
           " cannot start: it needs a processor with AVX2 or SSE 4.2 (" +
@@ -103,7 +129,31 @@ EmbreeScene::~EmbreeScene() {
   rtcReleaseScene(scene_);
 }
 
-SceneBuilder::SceneBuilder() : lock_(build_mutex()) {
+std::optional<SceneHit> EmbreeScene::nearest(const Ray& ray, RayKind kind, float t_min) const {
+  RTCRayHit query;
+  query.ray = to_embree(ray, kind, t_min);
+  query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+  query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+  trace_nearest(scene_, query);
+  const RTCHit& met = query.hit;
+  if (met.geomID == RTC_INVALID_GEOMETRY_ID) return std::nullopt;
+  SceneHit hit;
+  hit.number = met.instID[0] == RTC_INVALID_GEOMETRY_ID ? met.geomID : met.instID[0];
+  hit.inner = met.geomID;
+  hit.primitive = met.primID;
+  hit.copy = std::bit_cast<uint32_t>(met.Ng_x);
+  hit.copied = std::bit_cast<uint32_t>(met.Ng_y);
+  hit.t = static_cast<double>(query.ray.tfar);
+  return hit;
+}
+
+bool EmbreeScene::occluded(const Ray& ray) const {
+  RTCRay query = to_embree(ray, RayKind::shadow, kNearest);
+  trace_any(scene_, query);
+  return query.tfar < 0.0F;
+}
+
+EmbreeBuilder::EmbreeBuilder() : lock_(build_mutex()) {
   const Result<RTCDevice> found = embree_device();
   if (!found) {
     status_ = found.error();
@@ -117,18 +167,43 @@ SceneBuilder::SceneBuilder() : lock_(build_mutex()) {
   rtcSetSceneFlags(scene_, kSceneFlags);
 }
 
-SceneBuilder::~SceneBuilder() {
+EmbreeBuilder::~EmbreeBuilder() {
   if (scene_ != nullptr) rtcReleaseScene(scene_);
 }
 
-void SceneBuilder::attach(RTCGeometry geometry, unsigned id) {
+void EmbreeBuilder::attach(RTCGeometry geometry, unsigned id) {
   rtcSetGeometryBuildQuality(geometry, kBuildQuality);
   rtcCommitGeometry(geometry);
   rtcAttachGeometryByID(scene_, geometry, id);
   rtcReleaseGeometry(geometry);
 }
 
-Result<std::shared_ptr<const EmbreeScene>> SceneBuilder::commit() {
+void EmbreeBuilder::add_mesh(const MeshBuffers& buffers, unsigned mask, uint32_t number) {
+  attach(new_mesh_geometry(device_, buffers, mask), number);
+}
+
+void EmbreeBuilder::add_curves(const CurveSet& curves, unsigned mask, uint32_t number) {
+  attach(new_curve_geometry(device_, curves, mask), number);
+}
+
+void EmbreeBuilder::add_quadric(const PlacedObject& object, unsigned mask, uint32_t number) {
+  attach(new_quadric_geometry(device_, object, mask), number);
+}
+
+void EmbreeBuilder::add_instance(const RayScene& scene, const PlacedObject& object, unsigned mask,
+                                 uint32_t number) {
+  attach(new_instance_geometry(device_, handle_of(scene), object.motion(), mask), number);
+}
+
+void EmbreeBuilder::add_scene(const RayScene& scene, uint32_t number) {
+  attach(new_instance_geometry(device_, handle_of(scene), Motion(), kAllRays), number);
+}
+
+void EmbreeBuilder::add_copies(const InstancerScene& copies) {
+  attach(new_copies_geometry(device_, copies), 0);
+}
+
+Result<std::shared_ptr<const RayScene>> EmbreeBuilder::commit() {
   if (!status_) return status_.error();
   const FpMode mode;
   rtcCommitScene(scene_);
@@ -139,7 +214,7 @@ Result<std::shared_ptr<const EmbreeScene>> SceneBuilder::commit() {
   done->scene_ = std::exchange(scene_, nullptr);
   done->memory_ = embree_memory() - before_;
   lock_.unlock();
-  return std::shared_ptr<const EmbreeScene>(std::move(done));
+  return std::shared_ptr<const RayScene>(std::move(done));
 }
 
 }  // namespace hyades::core

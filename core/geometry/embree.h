@@ -7,11 +7,14 @@
 #endif
 
 #include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
 
 #include "core/base/result.h"
+#include "core/geometry/ray_scene.h"
 
 /// What differs between Embree 3 (Debian 12) and 4 (Debian 13), and the one device of the process.
 /// Only .cpp files of this room include this header.
@@ -54,41 +57,48 @@ size_t embree_memory();
 /// Embree may hold at most `bytes`; builds beyond fail as if memory had run out. 0: no limit.
 void limit_embree_memory(size_t bytes);
 
-/// A scene and the bytes that its geometries and hierarchy take.
-class EmbreeScene {
+/// A scene of Embree's.
+class EmbreeScene final : public RayScene {
  public:
-  ~EmbreeScene();
+  ~EmbreeScene() override;
   EmbreeScene(const EmbreeScene&) = delete;
   EmbreeScene& operator=(const EmbreeScene&) = delete;
 
+  std::optional<SceneHit> nearest(const Ray& ray, RayKind kind, float t_min) const override;
+  bool occluded(const Ray& ray) const override;
+  size_t memory() const override { return memory_; }
+
   RTCScene handle() const { return scene_; }
-  size_t memory() const { return memory_; }
 
  private:
-  friend class SceneBuilder;
+  friend class EmbreeBuilder;
   EmbreeScene() = default;
   RTCScene scene_ = nullptr;
   size_t memory_ = 0;
 };
 
-/// Fills a scene and commits it. Scenes are built one at a time in the process (each with all
+/// Fills a scene of Embree's. Scenes are built one at a time in the process (each with all
 /// threads), so that the bytes counted are its own.
-class SceneBuilder {
+class EmbreeBuilder final : public SceneBuilder {
  public:
-  SceneBuilder();
-  ~SceneBuilder();
-  SceneBuilder(const SceneBuilder&) = delete;
-  SceneBuilder& operator=(const SceneBuilder&) = delete;
+  EmbreeBuilder();
+  ~EmbreeBuilder() override;
+  EmbreeBuilder(const EmbreeBuilder&) = delete;
+  EmbreeBuilder& operator=(const EmbreeBuilder&) = delete;
 
-  RTCDevice device() const { return device_; }
-
-  /// Commits `geometry`, attaches it as number `id` and releases the caller's hold on it.
-  void attach(RTCGeometry geometry, unsigned id);
-
-  /// The finished scene, or what Embree objected to on the way.
-  Result<std::shared_ptr<const EmbreeScene>> commit();
+  void add_mesh(const MeshBuffers& buffers, unsigned mask, uint32_t number) override;
+  void add_curves(const CurveSet& curves, unsigned mask, uint32_t number) override;
+  void add_quadric(const PlacedObject& object, unsigned mask, uint32_t number) override;
+  void add_instance(const RayScene& scene, const PlacedObject& object, unsigned mask,
+                    uint32_t number) override;
+  void add_scene(const RayScene& scene, uint32_t number) override;
+  void add_copies(const InstancerScene& copies) override;
+  Result<std::shared_ptr<const RayScene>> commit() override;
 
  private:
+  /// Commits `geometry`, attaches it as number `id` and releases the hold on it.
+  void attach(RTCGeometry geometry, unsigned id);
+
   std::unique_lock<std::mutex> lock_;
   RTCDevice device_ = nullptr;
   RTCScene scene_ = nullptr;

@@ -1,10 +1,14 @@
 #include "core/geometry/embree_geometry.h"
 
 #include <algorithm>
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <optional>
+
+#include "core/geometry/instancer_scene.h"
+#include "core/geometry/placed_world.h"
 
 namespace hyades::core {
 namespace {
@@ -59,6 +63,66 @@ void occlude_quadric(const RTCOccludedFunctionNArguments* args) {
   }
 }
 
+/// `ray` as it is in the space of a copy; its distances stay what they are.
+RTCRay transformed(const RTCRay& ray, const Affine& to_copy) {
+  const Vec3 origin(to_copy.point(Vec3d(ray.org_x, ray.org_y, ray.org_z)));
+  const Vec3 direction(to_copy.vector(Vec3d(ray.dir_x, ray.dir_y, ray.dir_z)));
+  RTCRay out = ray;
+  out.org_x = origin.x;
+  out.org_y = origin.y;
+  out.org_z = origin.z;
+  out.dir_x = direction.x;
+  out.dir_y = direction.y;
+  out.dir_z = direction.z;
+  return out;
+}
+
+RTCScene scene_of(const InstancerScene& instancer) {
+  return static_cast<const EmbreeScene&>(instancer.inner().scene()).handle();
+}
+
+void copies_bounds_callback(const RTCBoundsFunctionArguments* args) {
+  const auto& instancer = *static_cast<const InstancerScene*>(args->geometryUserPtr);
+  const Bounds b =
+      instancer.bounds_of_copy(args->primID, args->timeStep, instancer.inner().bounds());
+  *args->bounds_o = {b.lower.x, b.lower.y, b.lower.z, 0.0F, b.upper.x, b.upper.y, b.upper.z, 0.0F};
+}
+
+void intersect_copy(const RTCIntersectFunctionNArguments* args) {
+  if (args->valid[0] == 0) return;
+  auto& found = *reinterpret_cast<RTCRayHit*>(args->rayhit);
+  const auto& instancer = *static_cast<const InstancerScene*>(args->geometryUserPtr);
+  RTCRayHit query;
+  query.ray = transformed(found.ray, instancer.pose(args->primID, found.ray.time).to_copy);
+  query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+  query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+  trace_nearest(scene_of(instancer), query);
+  if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return;
+  found.ray.tfar = query.ray.tfar;
+  // What was met in the copy stands on its own, or is a scene of the frames or of its own mesh.
+  const uint32_t instance = query.hit.instID[0];
+  SceneHit inner;
+  inner.number = instance == RTC_INVALID_GEOMETRY_ID ? query.hit.geomID : instance;
+  inner.inner = query.hit.geomID;
+  // Which copy and which of its objects travel where the normal would, which nobody reads.
+  found.hit.Ng_x = std::bit_cast<float>(args->primID);
+  found.hit.Ng_y = std::bit_cast<float>(instancer.inner().object_of(inner));
+  found.hit.u = 0.0F;
+  found.hit.v = 0.0F;
+  found.hit.primID = query.hit.primID;
+  found.hit.geomID = args->geomID;
+  found.hit.instID[0] = args->context->instID[0];
+}
+
+void occlude_copy(const RTCOccludedFunctionNArguments* args) {
+  if (args->valid[0] == 0) return;
+  auto& ray = *reinterpret_cast<RTCRay*>(args->ray);
+  const auto& instancer = *static_cast<const InstancerScene*>(args->geometryUserPtr);
+  RTCRay query = transformed(ray, instancer.pose(args->primID, ray.time).to_copy);
+  trace_any(scene_of(instancer), query);
+  if (query.tfar < 0.0F) ray.tfar = -std::numeric_limits<float>::infinity();
+}
+
 }  // namespace
 
 RTCGeometry new_mesh_geometry(RTCDevice device, const MeshBuffers& buffers, unsigned mask) {
@@ -109,6 +173,18 @@ RTCGeometry new_instance_geometry(RTCDevice device, RTCScene scene, const Motion
                             &m[0][0]);
   }
   rtcSetGeometryMask(geometry, mask);
+  return geometry;
+}
+
+RTCGeometry new_copies_geometry(RTCDevice device, const InstancerScene& copies) {
+  RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_USER);
+  rtcSetGeometryUserPrimitiveCount(geometry, copies.copy_count());
+  rtcSetGeometryTimeStepCount(geometry, static_cast<unsigned>(copies.motion().steps().size()));
+  rtcSetGeometryUserData(geometry, const_cast<InstancerScene*>(&copies));
+  rtcSetGeometryBoundsFunction(geometry, copies_bounds_callback, nullptr);
+  rtcSetGeometryIntersectFunction(geometry, intersect_copy);
+  rtcSetGeometryOccludedFunction(geometry, occlude_copy);
+  rtcSetGeometryMask(geometry, kAllRays);
   return geometry;
 }
 

@@ -18,4 +18,11 @@ RTCGeometry new_quadric_geometry(RTCDevice device, const PlacedObject& object, u
 RTCGeometry new_instance_geometry(RTCDevice device, RTCScene scene, const Motion& motion,
                                   unsigned mask);
 
+/// The copies of an instancer as user geometry whose primitives are the copies: a ray that comes
+/// near one is transformed, and traced in the world that is copied. Debian's Embree has one level
+/// of instances, of half a kilobyte each; this takes a fifth of that, and what is copied may hold
+/// instances in its turn. A hit's Ng_x and Ng_y hold the numbers of the copy and of the placement
+/// in it. `copies` must outlive the scene at its address.
+RTCGeometry new_copies_geometry(RTCDevice device, const InstancerScene& copies);
+
 }  // namespace hyades::core

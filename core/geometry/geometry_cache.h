@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "core/base/mutex.h"
-#include "core/geometry/embree.h"
 #include "core/geometry/placed_object.h"
+#include "core/geometry/ray_scene.h"
 #include "core/geometry/world.h"
 
 namespace hyades::core {
@@ -19,7 +19,7 @@ class InstancerScene;
 struct MeshScene {
   std::shared_ptr<const MeshBuffers> buffers;  ///< null for strands
   std::shared_ptr<const CurveSet> curves;      ///< null for meshes
-  std::shared_ptr<const EmbreeScene> scene;
+  std::shared_ptr<const RayScene> scene;
 };
 
 /// A placement made ready, under its number in the world.
@@ -31,7 +31,7 @@ struct NumberedObject {
 /// Still geometry in world space that frames share.
 struct StillScene {
   std::vector<NumberedObject> objects;
-  std::shared_ptr<const EmbreeScene> scene;
+  std::shared_ptr<const RayScene> scene;
 };
 
 /// What a MeshScene is of: the mesh, and what it deforms to; or the strands.
@@ -59,7 +59,8 @@ struct MadeGeometry {
 
 struct GeometryCache::State {
   Mutex mutex;  ///< held while a world is built
-  MadeGeometry made HYADES_GUARDED_BY(mutex);
+  MadeGeometry native HYADES_GUARDED_BY(mutex);
+  MadeGeometry portable HYADES_GUARDED_BY(mutex);
 };
 
 }  // namespace hyades::core

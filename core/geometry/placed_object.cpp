@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <limits>
 #include <utility>
 
@@ -89,14 +90,14 @@ PlacedObject::PlacedObject(Placement placement, std::shared_ptr<const MeshBuffer
     bounds_ = buffers_->bounds;
     return;
   }
-  for (const Affine& step : motion_.steps()) {
-    if (is_quadric()) {
-      bounds_.include(quadric_bounds(step, placement_.shape));
-    } else {
-      bounds_.include(
-          transform_bounds(step, is_curves() ? placement_.shape.curves->bounds : buffers_->bounds));
-    }
-  }
+  for (size_t i = 0; i < motion_.steps().size(); ++i) bounds_.include(bounds_at_step(i));
+}
+
+Bounds PlacedObject::bounds_at_step(size_t step) const {
+  const Affine& to_world = motion_.steps()[step];
+  if (is_quadric()) return quadric_bounds(to_world, placement_.shape);
+  return transform_bounds(to_world,
+                          is_curves() ? placement_.shape.curves->bounds : buffers_->bounds);
 }
 
 std::optional<Hit> PlacedObject::meet(const Ray& ray, uint32_t primitive,

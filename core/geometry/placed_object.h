@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -62,6 +63,8 @@ class PlacedObject {
   SurfacePoint quadric_place(const Vec3d& near, float time) const;
 
   Bounds bounds() const { return bounds_; }  ///< in the world, or in the space of copies
+  /// The same at a step of motion(); not of meshes in world space.
+  Bounds bounds_at_step(size_t step) const;
 
  private:
   /// Where it stands at some time.

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/base/ray.h"
+#include "core/base/render_class.h"
 #include "core/base/result.h"
 #include "core/geometry/point_instancer.h"
 #include "core/geometry/shape.h"
@@ -63,8 +64,8 @@ class GeometryCache {
 };
 
 /// All surfaces of one frame. Immutable and thread-safe; rays must be finite (NaN and infinity are
-/// counted and miss). Embree at one pinned ISA, build quality and flag set lies beneath: see
-/// docs/architecture.md.
+/// counted and miss). Beneath lies Embree at one pinned ISA, build quality and flag set, or a
+/// hierarchy of our own: see docs/architecture.md.
 class World {
  public:
   virtual ~World() = default;
@@ -101,7 +102,7 @@ class World {
   virtual Bounds bounds_of(uint32_t object) const = 0;
   virtual uint32_t placement_count() const = 0;
   virtual Bounds bounds() const = 0;  ///< over the whole shutter interval
-  virtual size_t memory() const = 0;  ///< bytes that Embree holds for it, and copies of vertices
+  virtual size_t memory() const = 0;  ///< bytes of its hierarchies, and of copies of vertices
 
   /// How many rays were refused since the world was built: not finite, or out of any scene's reach.
   virtual uint64_t invalid_rays() const { return 0; }
@@ -110,9 +111,9 @@ class World {
 /// Builds the world. Single still placements become direct geometry with world-space vertices;
 /// large meshes that are placed several times, and meshes that move, become instances of a scene in
 /// `cache`. Singular transforms are no error: meshes become flat, quadrics vanish. Errors: a
-/// transform that is not finite, coordinates beyond 1e12, Embree out of memory or without the
-/// pinned ISA.
+/// transform that is not finite, coordinates beyond 1e12, no memory; Embree without the pinned ISA.
 Result<std::shared_ptr<const World>> build_world(std::vector<Placement> placements,
-                                                 GeometryCache& cache);
+                                                 GeometryCache& cache,
+                                                 RenderClass which = RenderClass::native);
 
 }  // namespace hyades::core

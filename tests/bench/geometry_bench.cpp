@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "core/base/fp_mode.h"
-#include "core/geometry/embree_geometry.h"
+#include "core/geometry/embree.h"
 #include "core/geometry/read_mesh.h"
 #include "core/geometry/world.h"
 #include "tests/support/shared_assets.h"
@@ -55,7 +55,9 @@ struct Setup {
   GeometryCache cache;
   std::shared_ptr<const World> world;
   std::shared_ptr<const MeshBuffers> buffers;
-  std::shared_ptr<const EmbreeScene> bare;
+  std::shared_ptr<const RayScene> bare;  ///< Embree's
+  std::shared_ptr<const RayScene> tree;  ///< our own
+  RTCScene bare_handle() const { return static_cast<const EmbreeScene&>(*bare).handle(); }
   std::vector<Ray> primary;  ///< from one eye, in scan order
   std::vector<Ray> bounces;  ///< diffuse, off random places of the surface
   std::vector<Ray> inner;    ///< those bounces that meet the dragon again
@@ -96,9 +98,13 @@ Setup* setup() {
     s->mesh = *mesh;
     s->world = *build_world({place(s->mesh)}, s->cache);
     s->buffers = make_mesh_buffers(place(s->mesh).shape, nullptr);
-    SceneBuilder builder;
-    builder.attach(new_mesh_geometry(builder.device(), *s->buffers, 0xFFFFFFFFU), 0);
-    s->bare = *builder.commit();
+    const auto bare_scene = [&](RenderClass which) {
+      const auto builder = make_scene_builder(which);
+      builder->add_mesh(*s->buffers, kAllRays, 0);
+      return *builder->commit();
+    };
+    s->bare = bare_scene(RenderClass::native);
+    s->tree = bare_scene(RenderClass::portable);
     make_rays(*s);
     return s.release();
   }();
@@ -141,7 +147,7 @@ void each_ray(benchmark::State& state, std::vector<Ray> Setup::*rays, const Body
 void bare_nearest(benchmark::State& state, std::vector<Ray> Setup::*rays) {
   each_ray(state, rays, [](Setup& s, const Ray& ray) {
     RTCRayHit q = to_embree(ray);
-    trace_nearest(s.bare->handle(), q);
+    trace_nearest(s.bare_handle(), q);
     benchmark::DoNotOptimize(q);
   });
 }
@@ -151,7 +157,7 @@ void bare_nearest(benchmark::State& state, std::vector<Ray> Setup::*rays) {
 void bare_touch(benchmark::State& state, std::vector<Ray> Setup::*rays) {
   each_ray(state, rays, [](Setup& s, const Ray& ray) {
     RTCRayHit q = to_embree(ray);
-    trace_nearest(s.bare->handle(), q);
+    trace_nearest(s.bare_handle(), q);
     if (q.hit.geomID == RTC_INVALID_GEOMETRY_ID) return;
     Vec3 sum(0.0F);
     for (const uint32_t i : s.mesh->triangles[q.hit.primID]) sum += s.mesh->positions[i];
@@ -162,7 +168,7 @@ void bare_touch(benchmark::State& state, std::vector<Ray> Setup::*rays) {
 void bare_any(benchmark::State& state, std::vector<Ray> Setup::*rays) {
   each_ray(state, rays, [](Setup& s, const Ray& ray) {
     RTCRayHit q = to_embree(ray);
-    trace_any(s.bare->handle(), q.ray);
+    trace_any(s.bare_handle(), q.ray);
     benchmark::DoNotOptimize(q);
   });
 }
@@ -183,6 +189,18 @@ void world_surface(benchmark::State& state, std::vector<Ray> Setup::*rays) {
 void world_any(benchmark::State& state, std::vector<Ray> Setup::*rays) {
   each_ray(state, rays,
            [](Setup& s, const Ray& ray) { benchmark::DoNotOptimize(s.world->occluded(ray)); });
+}
+
+/// Our own hierarchy beside bare Embree.
+void tree_nearest(benchmark::State& state, std::vector<Ray> Setup::*rays) {
+  each_ray(state, rays, [](Setup& s, const Ray& ray) {
+    benchmark::DoNotOptimize(s.tree->nearest(ray, RayKind::other, kNearest));
+  });
+}
+
+void tree_any(benchmark::State& state, std::vector<Ray> Setup::*rays) {
+  each_ray(state, rays,
+           [](Setup& s, const Ray& ray) { benchmark::DoNotOptimize(s.tree->occluded(ray)); });
 }
 
 /// World against itself with the dragon in another role.
@@ -244,6 +262,10 @@ BENCHMARK_CAPTURE(world_nearest, inner, &Setup::inner);
 BENCHMARK_CAPTURE(world_surface, inner, &Setup::inner);
 BENCHMARK_CAPTURE(bare_any, bounces, &Setup::bounces);
 BENCHMARK_CAPTURE(world_any, bounces, &Setup::bounces);
+BENCHMARK_CAPTURE(tree_nearest, primary, &Setup::primary);
+BENCHMARK_CAPTURE(tree_nearest, bounces, &Setup::bounces);
+BENCHMARK_CAPTURE(tree_nearest, inner, &Setup::inner);
+BENCHMARK_CAPTURE(tree_any, bounces, &Setup::bounces);
 BENCHMARK(direct_with_ball);
 BENCHMARK(identity_instance_with_ball);
 BENCHMARK(true_instance);
@@ -262,15 +284,18 @@ void load(benchmark::State& state, const char* name) {
 BENCHMARK_CAPTURE(load, dragon_ply, "dragon_100k.ply")->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(load, bunny_obj, "bunny_closed_75k.obj")->Unit(benchmark::kMillisecond);
 
-void build(benchmark::State& state) {
+void build(benchmark::State& state, RenderClass which) {
   Setup* s = setup();
   if (s == nullptr) return;
   for (auto _ : state) {
     GeometryCache cache;
-    benchmark::DoNotOptimize(build_world({place(s->mesh)}, cache));
+    benchmark::DoNotOptimize(build_world({place(s->mesh)}, cache, which));
   }
 }
-BENCHMARK(build)->Unit(benchmark::kMillisecond)->UseRealTime();
+BENCHMARK_CAPTURE(build, native, RenderClass::native)->Unit(benchmark::kMillisecond)->UseRealTime();
+BENCHMARK_CAPTURE(build, portable, RenderClass::portable)
+    ->Unit(benchmark::kMillisecond)
+    ->UseRealTime();
 
 }  // namespace
 

@@ -31,7 +31,7 @@ Placement placed(std::shared_ptr<const CurveSet> curves, const Mat4& to_world = 
 
 std::shared_ptr<const World> world_of(std::vector<Placement> placements) {
   GeometryCache cache;
-  auto world = build_world(std::move(placements), cache);
+  auto world = build_world(std::move(placements), cache, test::tested_class());
   EXPECT_TRUE(world.ok()) << (world.ok() ? "" : world.error().message);
   return *world;
 }

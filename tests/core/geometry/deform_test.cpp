@@ -233,7 +233,7 @@ TEST(Deforming, MeshesOfOtherVerticesAreRefused) {
   p.shape.next = stirred(*test::make_ball(1), 0.0F, 1);
   EXPECT_FALSE(same_topology(*p.shape.mesh, *p.shape.next));
   GeometryCache cache;
-  const auto world = build_world({p}, cache);
+  const auto world = build_world({p}, cache, test::tested_class());
   ASSERT_FALSE(world.ok());
   EXPECT_NE(world.error().message.find("other vertices"), std::string::npos);
 }

@@ -14,9 +14,9 @@
 namespace hyades::core {
 namespace {
 
-using Triangle = std::array<uint32_t, 3>;
+using Corners = std::array<uint32_t, 3>;
 
-double signed_area(const std::vector<Vec3>& p, const Triangle& t) {
+double signed_area(const std::vector<Vec3>& p, const Corners& t) {
   const Vec3d a(p[t[0]]);
   return 0.5 * glm::cross(Vec3d(p[t[1]]) - a, Vec3d(p[t[2]]) - a).z;
 }
@@ -37,12 +37,12 @@ double outline_area(const std::vector<Vec3>& p) {
 void expect_right_cut(const std::vector<Vec3>& outline) {
   std::vector<uint32_t> corners(outline.size());
   std::iota(corners.begin(), corners.end(), 0U);
-  std::vector<Triangle> triangles;
+  std::vector<Corners> triangles;
   triangulate(outline, corners, triangles);
   ASSERT_EQ(triangles.size(), outline.size() - 2);
   const double whole = outline_area(outline);
   double sum = 0.0;
-  for (const Triangle& t : triangles) {
+  for (const Corners& t : triangles) {
     const double area = signed_area(outline, t);
     EXPECT_GE(area * (whole > 0.0 ? 1.0 : -1.0), -1e-7 * std::abs(whole));
     sum += area;
@@ -96,7 +96,7 @@ TEST(Triangulate, SelfCrossingAndFlatOutlinesEnd) {
     }
     std::vector<uint32_t> corners(n);
     std::iota(corners.begin(), corners.end(), 0U);
-    std::vector<Triangle> triangles;
+    std::vector<Corners> triangles;
     triangulate(points, corners, triangles);
     EXPECT_EQ(triangles.size(), n - 2);
   }
@@ -134,7 +134,7 @@ TEST(Shape, BoxAndRectangleFaceOutwards) {
   EXPECT_EQ(box->bounds.lower, Vec3(-1, -2, -3));
   EXPECT_EQ(box->bounds.upper, Vec3(1, 2, 3));
   ASSERT_EQ(box->triangles.size(), 12U);
-  for (const Triangle& t : box->triangles) {
+  for (const Corners& t : box->triangles) {
     const Vec3 a = box->positions[t[0]];
     const Vec3 b = box->positions[t[1]];
     const Vec3 c = box->positions[t[2]];

@@ -220,10 +220,10 @@ TEST(PointInstancer, FramesShareIt) {
   const auto instancer = instancer_of(some_places(100, 5.0F));
   std::vector<Placement> all = in_instancer(members(), instancer);
   all.push_back(test::place(Shape::Kind::sphere, 1.0F, 1.0F));
-  const auto first = build_world(all, cache);
+  const auto first = build_world(all, cache, test::tested_class());
   ASSERT_TRUE(first);
   all.back().to_world = {test::translation({1.0F, 0.0F, 0.0F})};
-  const auto second = build_world(all, cache);
+  const auto second = build_world(all, cache, test::tested_class());
   ASSERT_TRUE(second);
   const size_t alone = (*first)->memory();
   EXPECT_NEAR(static_cast<double>((*second)->memory()), static_cast<double>(alone), 4096.0);
@@ -234,7 +234,7 @@ TEST(PointInstancer, OnesThatDifferAreNotShared) {
   const FpMode mode;
   GeometryCache cache;
   const auto height_at = [&](const std::vector<Placement>& all) {
-    const auto world = build_world(all, cache);
+    const auto world = build_world(all, cache, test::tested_class());
     EXPECT_TRUE(world);
     SurfacePoint p;
     const Ray ray{{0.0F, 20.0F, 0.0F}, {0.0F, -1.0F, 0.0F}, kInfinity, 0.0F};
@@ -254,8 +254,8 @@ TEST(PointInstancer, OnesThatDifferAreNotShared) {
 TEST(PointInstancer, PlacesThatLeadNowhereAreRefused) {
   const auto complaint = [](const Mat4& place) {
     GeometryCache cache;
-    const auto world =
-        build_world(in_instancer(members(), instancer_of({Mat4(1.0F), place})), cache);
+    const auto world = build_world(in_instancer(members(), instancer_of({Mat4(1.0F), place})),
+                                   cache, test::tested_class());
     return world ? std::string("none") : world.error().message;
   };
   Mat4 nowhere(1.0F);

@@ -85,7 +85,8 @@ Ray aim(const World& world, const Vec3& from, float time, Target target, Random&
 /// robust test gives neighbours opposite signs along their common edge, exactly, so that one of
 /// them is hit; but around a vertex rounding may choose the signs such that no triangle claims it.
 /// That was measured for 3 in 10,000 (ball) to 4 in 1000 (bunny) of the rays that aim exactly at a
-/// vertex; a ray that does not passes one as near as that once in about 1e9.
+/// vertex; a ray that does not passes one as near as that once in about 1e9. The portable class
+/// lets none through.
 class Leaks {
  public:
   void aim_from(const World& world, const Vec3& from, float time, Random& random) {
@@ -98,7 +99,8 @@ class Leaks {
   }
   void check() const {
     EXPECT_EQ(elsewhere_, 0U);
-    EXPECT_LE(at_vertices_, 5 + tried_ / 100);
+    const bool exact = test::tested_class() == RenderClass::portable;
+    EXPECT_LE(at_vertices_, exact ? 0 : 5 + tried_ / 100);
   }
 
  private:

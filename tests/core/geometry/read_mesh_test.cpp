@@ -75,7 +75,7 @@ std::string binary_header(bool big_endian) {
          "_endian 1.0\ncomment made by hand\n";
 }
 
-using Triangle = std::array<uint32_t, 3>;
+using Corners = std::array<uint32_t, 3>;
 
 TEST(ReadPly, AsciiTriangles) {
   const auto mesh = must_read(
@@ -87,7 +87,7 @@ TEST(ReadPly, AsciiTriangles) {
   ASSERT_EQ(mesh->positions.size(), 4U);
   EXPECT_EQ(mesh->positions[3], Vec3(5.0F, -2.0F, 3.25F));
   ASSERT_EQ(mesh->triangles.size(), 2U);
-  EXPECT_EQ(mesh->triangles[1], (Triangle{2, 1, 3}));
+  EXPECT_EQ(mesh->triangles[1], (Corners{2, 1, 3}));
   EXPECT_EQ(mesh->bounds.lower, Vec3(0.0F, -2.0F, 0.0F));
   EXPECT_EQ(mesh->bounds.upper, Vec3(5.0F, 1.0F, 3.25F));
   EXPECT_GT(mesh->positions.capacity(), mesh->positions.size());
@@ -120,7 +120,7 @@ TEST(ReadPly, AnyTypesInAnyOrder) {
     ASSERT_EQ(mesh->uvs.size(), 3U);
     EXPECT_EQ(mesh->uvs[2], Vec2(0.75F, 0.5F));
     ASSERT_EQ(mesh->triangles.size(), 1U);
-    EXPECT_EQ(mesh->triangles[0], (Triangle{2, 0, 1}));
+    EXPECT_EQ(mesh->triangles[0], (Corners{2, 0, 1}));
   }
 }
 
@@ -172,7 +172,7 @@ TEST(ReadPly, TriangleStrips) {
       "0 0 0\n1 0 0\n0 1 0\n1 1 0\n5 0 0\n6 0 0\n5 1 0\n"
       "8 0 1 2 3 -1 4 5 6\n");
   ASSERT_EQ(mesh->triangles.size(), 3U);
-  for (const Triangle& t : mesh->triangles) {
+  for (const Corners& t : mesh->triangles) {
     const Vec3 n = glm::cross(mesh->positions[t[1]] - mesh->positions[t[0]],
                               mesh->positions[t[2]] - mesh->positions[t[0]]);
     EXPECT_GT(n.z, 0.0F);
@@ -186,7 +186,7 @@ TEST(ReadPly, VerticesWithoutFacesAreDropped) {
       "9 9 9\n0 0 0\n8 8 8\n1 0 0\n0 1 0\n3 1 3 4\n");
   ASSERT_EQ(mesh->positions.size(), 3U);
   EXPECT_EQ(mesh->positions[1], Vec3(1, 0, 0));
-  EXPECT_EQ(mesh->triangles[0], (Triangle{0, 1, 2}));
+  EXPECT_EQ(mesh->triangles[0], (Corners{0, 1, 2}));
   EXPECT_EQ(mesh->bounds.upper, Vec3(1, 1, 0));
 }
 
@@ -274,10 +274,10 @@ TEST(ReadObj, FacesOfEveryForm) {
   EXPECT_EQ(mesh->triangles.size(), 7U);
   ASSERT_EQ(mesh->normals.size(), mesh->positions.size());
   ASSERT_EQ(mesh->uvs.size(), mesh->positions.size());
-  const Triangle& last = mesh->triangles.back();
+  const Corners& last = mesh->triangles.back();
   EXPECT_EQ(mesh->positions[last[1]], Vec3(1, 1, 0));
   EXPECT_EQ(mesh->positions[last[2]], Vec3(0, 1, 0));
-  const Triangle& quad = mesh->triangles[3];
+  const Corners& quad = mesh->triangles[3];
   EXPECT_EQ(mesh->normals[quad[0]], Vec3(0, 0, 1));
   EXPECT_EQ(mesh->uvs[quad[1]], Vec2(1, 0));
   EXPECT_EQ(mesh->uvs[quad[2]], Vec2(0.5F, 0));
@@ -361,7 +361,7 @@ TEST(ReadObj, LongFilesAreReadInPiecesWithRightLineNumbersAndIndices) {
   const auto mesh = must_read(text);
   ASSERT_EQ(mesh->triangles.size(), blocks);
   for (size_t i = 0; i < blocks; i += 997) {
-    const Triangle& t = mesh->triangles[i];
+    const Corners& t = mesh->triangles[i];
     EXPECT_EQ(mesh->positions[t[0]], Vec3(static_cast<float>(i), 0, 0));
     EXPECT_EQ(mesh->positions[t[2]], Vec3(static_cast<float>(i), 0, 1));
   }
@@ -406,7 +406,7 @@ std::vector<std::string> samples() {
 /// What a reader promises of every mesh it lets through.
 void check_mesh(const TriangleMesh& mesh) {
   ASSERT_FALSE(mesh.triangles.empty());
-  for (const Triangle& t : mesh.triangles) {
+  for (const Corners& t : mesh.triangles) {
     for (const uint32_t i : t) ASSERT_LT(i, mesh.positions.size());
   }
   for (const Vec3& p : mesh.positions) ASSERT_TRUE(std::isfinite(p.x + p.y + p.z));

@@ -11,6 +11,7 @@
 #include "core/geometry/build_thresholds.h"
 #include "core/geometry/world.h"
 #include "tests/support/random.h"
+#include "tests/support/tested_class.h"
 
 /// What the tests of this room share: matrices, meshes and worlds.
 namespace hyades::test {
@@ -108,7 +109,7 @@ inline constexpr core::BuildThresholds kInstanceAll{0, 0};
 inline std::shared_ptr<const core::World> build(std::vector<core::Placement> placements,
                                                 const core::BuildThresholds& thresholds = {}) {
   core::GeometryCache cache;
-  auto world = core::build_world(std::move(placements), cache, thresholds);
+  auto world = core::build_world(std::move(placements), cache, tested_class(), thresholds);
   EXPECT_TRUE(world.ok()) << (world.ok() ? "" : world.error().message);
   return world.ok() ? *world : nullptr;
 }

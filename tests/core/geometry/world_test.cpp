@@ -6,13 +6,14 @@
 #include <random>
 
 #include "core/base/elementary.h"
+#include "tests/support/tested_class.h"
 
 namespace hyades::core {
 namespace {
 
 std::shared_ptr<const World> world_of(std::vector<Placement> placements) {
   GeometryCache cache;
-  auto world = build_world(std::move(placements), cache);
+  auto world = build_world(std::move(placements), cache, test::tested_class());
   EXPECT_TRUE(world.ok()) << (world.ok() ? "" : world.error().message);
   return world.ok() ? *world : nullptr;
 }

@@ -9,6 +9,7 @@
 
 #include "core/geometry/geometry_cache.h"
 #include "core/geometry/instancer_scene.h"
+#include "core/geometry/ray_scene.h"
 #include "core/geometry/world.h"
 
 namespace hyades::core {
@@ -19,15 +20,15 @@ struct WorldParts {
   std::vector<std::shared_ptr<const MeshScene>> mesh_scenes;  ///< distinct, in use
   std::shared_ptr<const StillScene> still;                    ///< null: all is in `top`
   std::vector<PlacedInstancer> instancers;
-  std::shared_ptr<const EmbreeScene> top;
+  std::shared_ptr<const RayScene> top;
 };
 
-/// The world over one Embree scene. Geometry numbers in `top` are numbers of placements, but for
+/// The world over one scene. Geometry numbers in `top` are numbers of placements, but for
 /// the still scene, an instance with the number after the last, and the
 /// instancers, instances with the numbers after that.
-class EmbreeWorld final : public World {
+class PlacedWorld final : public World {
  public:
-  explicit EmbreeWorld(WorldParts parts);
+  explicit PlacedWorld(WorldParts parts);
 
   std::optional<Hit> intersect(const Ray& ray, RayKind kind) const override;
   bool occluded(const Ray& ray) const override;
@@ -44,11 +45,10 @@ class EmbreeWorld final : public World {
   uint64_t invalid_rays() const override { return invalid_rays_.load(); }
   Bounds bounds_of(uint32_t object) const override;
 
-  RTCScene scene() const { return scene_; }
-  /// The placement that Embree's numbers of a hit name, in a world without instancers.
-  uint32_t object_of(const RTCHit& hit) const {
-    const uint32_t instance = hit.instID[0];
-    return instance == RTC_INVALID_GEOMETRY_ID || instance == still_number_ ? hit.geomID : instance;
+  const RayScene& scene() const { return *parts_.top; }
+  /// The placement that a hit names, in a world without instancers.
+  uint32_t object_of(const SceneHit& hit) const {
+    return hit.number == still_number_ ? hit.inner : hit.number;
   }
   const std::vector<std::shared_ptr<const PlacedObject>>& objects() const { return parts_.objects; }
 
@@ -58,14 +58,13 @@ class EmbreeWorld final : public World {
   /// The instancer that placement `object` belongs to; null: none.
   const InstancerScene* instancer_of(uint32_t object) const;
 
-  /// Hands what Embree finds along the ray to `take(placement, primitive, instancer, copy)`, the
+  /// Hands what the scene finds along the ray to `take(placement, primitive, instancer, copy)`, the
   /// instancer null where the placement stands in the world itself, until it returns true; false
   /// where it never does.
   template <class Take>
   bool find_nearest(const Ray& ray, RayKind kind, Take&& take) const;
 
   WorldParts parts_;
-  RTCScene scene_;
   uint32_t still_number_;
   Bounds bounds_;
   size_t memory_ = 0;

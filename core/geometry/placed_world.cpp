@@ -1,4 +1,4 @@
-#include "core/geometry/embree_world.h"
+#include "core/geometry/placed_world.h"
 
 #include <algorithm>
 #include <cmath>
@@ -14,9 +14,6 @@ namespace {
 /// Directions are unit vectors; longer ones are refused long before they overflow.
 constexpr float kLongestDirection = 1e3F;
 
-/// Embree counts hits at tnear itself; those at 0 are not wanted.
-constexpr float kNearest = std::numeric_limits<float>::min();
-
 /// How often a hit that exact arithmetic denies is skipped before the ray counts as a miss.
 constexpr int kMaxRetries = 16;
 
@@ -25,29 +22,10 @@ bool within(const Vec3& v, float limit) {
   return std::abs(v.x) <= limit && std::abs(v.y) <= limit && std::abs(v.z) <= limit;
 }
 
-RTCRay to_embree(const Ray& ray, RayKind kind) {
-  RTCRay r;
-  r.org_x = ray.origin.x;
-  r.org_y = ray.origin.y;
-  r.org_z = ray.origin.z;
-  r.tnear = kNearest;
-  r.dir_x = ray.direction.x;
-  r.dir_y = ray.direction.y;
-  r.dir_z = ray.direction.z;
-  r.time = std::clamp(ray.time, 0.0F, 1.0F);
-  r.tfar = ray.t_max;
-  r.mask = static_cast<unsigned>(kind);
-  r.id = 0;
-  r.flags = 0;
-  return r;
-}
-
 }  // namespace
 
-EmbreeWorld::EmbreeWorld(WorldParts parts)
-    : parts_(std::move(parts)),
-      scene_(parts_.top->handle()),
-      still_number_(static_cast<uint32_t>(parts_.objects.size())) {
+PlacedWorld::PlacedWorld(WorldParts parts)
+    : parts_(std::move(parts)), still_number_(static_cast<uint32_t>(parts_.objects.size())) {
   std::set<const MeshBuffers*> copies;
   for (uint32_t i = 0; i < parts_.objects.size(); ++i) {
     if (instancer_of(i) != nullptr) continue;
@@ -65,7 +43,7 @@ EmbreeWorld::EmbreeWorld(WorldParts parts)
   for (const auto& mesh : parts_.mesh_scenes) memory_ += mesh->scene->memory();
 }
 
-bool EmbreeWorld::usable(const Ray& ray) const {
+bool PlacedWorld::usable(const Ray& ray) const {
   const Vec3& d = ray.direction;
   const bool good = within(ray.origin, kRayReach) && within(d, kLongestDirection) &&
                     glm::dot(d, d) > 0.0F && std::isfinite(ray.time) && !std::isnan(ray.t_max);
@@ -74,33 +52,27 @@ bool EmbreeWorld::usable(const Ray& ray) const {
 }
 
 template <class Take>
-bool EmbreeWorld::find_nearest(const Ray& ray, RayKind kind, Take&& take) const {
+bool PlacedWorld::find_nearest(const Ray& ray, RayKind kind, Take&& take) const {
   if (!usable(ray)) return false;
-  RTCRayHit query;
-  query.ray = to_embree(ray, kind);
+  float t_min = kNearest;
   for (int i = 0; i < kMaxRetries; ++i) {
-    query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-    query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
-    trace_nearest(scene_, query);
-    if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return false;
-    const uint32_t instance = query.hit.instID[0];
-    if (instance != RTC_INVALID_GEOMETRY_ID && instance > still_number_) {
-      const PlacedInstancer& instancer = parts_.instancers[instance - still_number_ - 1];
-      const CopyHit on = copy_hit(query.hit);
-      if (take(instancer.first + on.object, query.hit.primID, instancer.scene.get(), on.copy))
+    const auto hit = parts_.top->nearest(ray, kind, t_min);
+    if (!hit) return false;
+    if (hit->number > still_number_) {
+      const PlacedInstancer& instancer = parts_.instancers[hit->number - still_number_ - 1];
+      if (take(instancer.first + hit->copied, hit->primitive, instancer.scene.get(), hit->copy))
         return true;
-    } else if (take(object_of(query.hit), query.hit.primID, nullptr, 0U)) {
+    } else if (take(object_of(*hit), hit->primitive, nullptr, 0U)) {
       return true;
     }
     // The primitive lies behind the origin, beyond the end or edge-on, by less than float can tell.
-    query.ray.tnear = std::nextafter(query.ray.tfar, kInfinity);
-    query.ray.tfar = ray.t_max;
-    if (!(query.ray.tnear < query.ray.tfar)) return false;
+    t_min = std::nextafter(static_cast<float>(hit->t), kInfinity);
+    if (!(t_min < ray.t_max)) return false;
   }
   return false;
 }
 
-std::optional<Hit> EmbreeWorld::intersect(const Ray& ray, RayKind kind) const {
+std::optional<Hit> PlacedWorld::intersect(const Ray& ray, RayKind kind) const {
   std::optional<Hit> hit;
   find_nearest(
       ray, kind,
@@ -118,7 +90,7 @@ std::optional<Hit> EmbreeWorld::intersect(const Ray& ray, RayKind kind) const {
   return hit;
 }
 
-bool EmbreeWorld::nearest(const Ray& ray, RayKind kind, SurfacePoint& point) const {
+bool PlacedWorld::nearest(const Ray& ray, RayKind kind, SurfacePoint& point) const {
   return find_nearest(
       ray, kind,
       [&](uint32_t object, uint32_t primitive, const InstancerScene* instancer, uint32_t copy) {
@@ -133,14 +105,11 @@ bool EmbreeWorld::nearest(const Ray& ray, RayKind kind, SurfacePoint& point) con
       });
 }
 
-bool EmbreeWorld::occluded(const Ray& ray) const {
-  if (!usable(ray)) return false;
-  RTCRay query = to_embree(ray, RayKind::shadow);
-  trace_any(scene_, query);
-  return query.tfar < 0.0F;
+bool PlacedWorld::occluded(const Ray& ray) const {
+  return usable(ray) && parts_.top->occluded(ray);
 }
 
-SurfacePoint EmbreeWorld::surface(const Ray& ray, const Hit& hit) const {
+SurfacePoint PlacedWorld::surface(const Ray& ray, const Hit& hit) const {
   std::optional<CopyPose> pose;
   if (const InstancerScene* instancer = instancer_of(hit.object))
     pose = instancer->pose(hit.copy, ray.time);
@@ -149,7 +118,7 @@ SurfacePoint EmbreeWorld::surface(const Ray& ray, const Hit& hit) const {
   return p;
 }
 
-SurfacePoint EmbreeWorld::triangle_point(uint32_t object, uint32_t primitive, float u, float v,
+SurfacePoint PlacedWorld::triangle_point(uint32_t object, uint32_t primitive, float u, float v,
                                          float time) const {
   std::optional<CopyPose> pose;
   if (const InstancerScene* instancer = instancer_of(object)) pose = instancer->pose(0, time);
@@ -159,13 +128,13 @@ SurfacePoint EmbreeWorld::triangle_point(uint32_t object, uint32_t primitive, fl
   return p;
 }
 
-SurfacePoint EmbreeWorld::quadric_point(uint32_t object, const Vec3& near, float time) const {
+SurfacePoint PlacedWorld::quadric_point(uint32_t object, const Vec3& near, float time) const {
   SurfacePoint p = parts_.objects[object]->quadric_place(Vec3d(near), time);
   p.object = object;
   return p;
 }
 
-Mat4 EmbreeWorld::transform_at(uint32_t object, float time) const {
+Mat4 PlacedWorld::transform_at(uint32_t object, float time) const {
   if (const InstancerScene* instancer = instancer_of(object))
     return instancer->motion().at(time).to_mat4();
   const PlacedObject& placed = *parts_.objects[object];
@@ -173,11 +142,11 @@ Mat4 EmbreeWorld::transform_at(uint32_t object, float time) const {
                                  : placed.motion().at(time).to_mat4();
 }
 
-const Placement& EmbreeWorld::placement(uint32_t object) const {
+const Placement& PlacedWorld::placement(uint32_t object) const {
   return parts_.objects[object]->placement();
 }
 
-const InstancerScene* EmbreeWorld::instancer_of(uint32_t object) const {
+const InstancerScene* PlacedWorld::instancer_of(uint32_t object) const {
   for (const PlacedInstancer& instancer : parts_.instancers) {
     if (object >= instancer.first &&
         object - instancer.first < instancer.scene->inner().placement_count()) {
@@ -187,13 +156,13 @@ const InstancerScene* EmbreeWorld::instancer_of(uint32_t object) const {
   return nullptr;
 }
 
-Bounds EmbreeWorld::bounds_of(uint32_t object) const {
+Bounds PlacedWorld::bounds_of(uint32_t object) const {
   const InstancerScene* instancer = instancer_of(object);
   const Bounds own = parts_.objects[object]->bounds();
   return instancer == nullptr ? own : instancer->bounds_of(own);
 }
 
-uint32_t EmbreeWorld::placement_count() const {
+uint32_t PlacedWorld::placement_count() const {
   return static_cast<uint32_t>(parts_.objects.size());
 }
 
