@@ -89,6 +89,7 @@ int bench_command(int argc, char** argv) {
   auto* command =
       app.add_subcommand("scaling", "renders the first frame of a job with 1..N threads");
   command->add_option("job", path, job_words())->capture_default_str();
+  declare_class_option(*command, scene_options);
   declare_scene_options(*command, scene_options);
   command->add_option("--threads", threads, "most threads")
       ->check(in_range(1, 1024))

@@ -113,6 +113,7 @@ std::optional<int> parse_check_options(int argc, char** argv, CheckOptions& opti
   app.add_flag("-q,--quiet", options.quiet, "say nothing of a good job");
   app.footer(
       "examples:\n  hyades check jobs/cornell/job.yaml\nexit status: 0 good, 2 mistakes found");
+  declare_class_option(app, options.scene);
   declare_scene_options(app, options.scene);
   return parse_command_line(app, argc, argv, kBadInput);
 }

@@ -43,6 +43,7 @@ std::optional<int> parse(int argc, char** argv, Options& options) {
       "hyades finish");
   app.add_option("job", options.job, "the job, as it was rendered")->required();
   app.add_option("films", options.films, "film EXRs of its frames, in any order")->required();
+  declare_class_option(app, options.scene);
   declare_scene_options(app, options.scene);
   declare_output_folder(app, options.folder);
   declare_film_size(app, options.size);

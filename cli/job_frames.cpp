@@ -38,9 +38,10 @@ constexpr size_t kBadExamples = 5;
 /// So many frames' keys are remembered: more than are in flight.
 constexpr size_t kKeysKept = 16;
 
-/// Empty where Embree does not run: then there is no film either.
-std::string machine_class() {
-  const auto measured = core::this_class();
+/// This machine's class in which the job is rendered. Empty where Embree does not run and is
+/// wanted: then there is no film either.
+std::string class_for(const core::Job& job) {
+  const auto measured = core::this_class(job.render.render_class);
   return measured ? *measured : std::string();
 }
 
@@ -305,7 +306,7 @@ std::string JobFrames::film_path(int32_t frame) const {
 
 core::FilmInfo JobFrames::film_info(int32_t frame) const {
   core::FilmInfo info = core::film_info(loaded_.job, frame, assets_);
-  info.worker_class = machine_class();
+  info.worker_class = class_for(loaded_.job);
   return info;
 }
 
@@ -314,7 +315,7 @@ coordinator::FrameKey JobFrames::frame_key(int32_t frame) {
   if (const auto known = keys_.find(frame); known != keys_.end()) return known->second;
   const coordinator::FrameKey key =
       // Another machine (or build) may give other bits: its films are not continued here.
-      core::sha256(fmt::format("{} {} {}", machine_class(),
+      core::sha256(fmt::format("{} {} {}", class_for(loaded_.job),
                                core::render_key(loaded_.job, frame, assets_),
                                core::layers_text(layers_)));
   if (keys_.size() >= kKeysKept) keys_.erase(keys_.begin());

@@ -170,6 +170,7 @@ std::optional<int> parse_render_options(int argc, char** argv, RenderOptions& op
   declare_what(app, options, words);
   declare_resources(app, options);
   declare_results(app, options);
+  declare_class_option(app, options.scene);
   declare_scene_options(app, options.scene);
   app.footer(
       "examples:\n"

@@ -29,6 +29,7 @@ int replay_command(int argc, char** argv) {
   std::vector<int> pixel;
   uint32_t sample = 0;
   app.add_option("job", path, job_words())->required();
+  declare_class_option(app, scene_options);
   declare_scene_options(app, scene_options);
   auto* frame_option = app.add_option("--frame", frame, "frame number (default: the job's first)");
   add_whole_numbers(app, "--pixel", pixel, "X,Y", "in full-frame pixels, 0,0 is the top left")

@@ -6,6 +6,7 @@
 #include <CLI/CLI.hpp>
 
 #include "core/base/printable.h"
+#include "core/base/render_class.h"
 #include "core/job/scene_document.h"
 #include "core/job/script_include.h"
 
@@ -64,6 +65,14 @@ void declare_scene_options(CLI::App& app, SceneOptions& options) {
                "follow links that lead out of a scene's folder: only of scenes that you trust");
   declare_set_option(app, options.set);
   app.option_defaults()->group(others);
+}
+
+void declare_class_option(CLI::App& app, SceneOptions& options) {
+  app.add_option("--class", options.render_class,
+                 "native or portable, instead of the job's render.class: portable gives the same "
+                 "pixels on every processor")
+      ->check(CLI::IsMember(core::kRenderClassNames))
+      ->type_name("CLASS");
 }
 
 core::JobFileOptions job_file_options(const SceneOptions& options) {

@@ -19,7 +19,8 @@ struct SceneOptions {
   bool missing_textures = false;  ///< pictures that are not there are magenta, not errors
   bool follow_links = false;      ///< out of scenes' folders too
   std::vector<std::string> set;   ///< of a script: "name=value"
-  std::string frames;  ///< of a .blend: those that are wanted; empty: all. No option here
+  std::string render_class;  ///< instead of the job's; empty: that. Where declare_class_option()
+  std::string frames;        ///< of a .blend: those that are wanted; empty: all. No option here
 };
 
 /// What commands take as their job, for their help.
@@ -27,6 +28,9 @@ std::string job_words();
 
 /// Options --media, --animation, --loop, --missing-textures, --follow-links and --set.
 void declare_scene_options(CLI::App& app, SceneOptions& options);
+
+/// Option --class.
+void declare_class_option(CLI::App& app, SceneOptions& options);
 
 /// Option --set of scripts, into `set`.
 void declare_set_option(CLI::App& app, std::vector<std::string>& set);

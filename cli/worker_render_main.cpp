@@ -105,12 +105,15 @@ int main(int argc, char** argv) {
   const core::Status bounded = core::limit_file_size(std::max(texture_disk, kLogBytes));
   if (!bounded) return refuse(parent, bounded.error().message);
 
-  const auto measured = core::this_class();
-  if (!measured) return refuse(parent, measured.error().message);
+  const auto native = core::this_class(core::RenderClass::native);
+  if (!native) return refuse(parent, native.error().message);
+  const auto portable = core::this_class(core::RenderClass::portable);
+  if (!portable) return refuse(parent, portable.error().message);
   auto store = farm::ContentStore::open({cache, 0});
   if (!store) return refuse(parent, store.error().message);
   pipe::FromRenderer ready;
-  ready.mutable_ready()->set_worker_class(*measured);
+  ready.mutable_ready()->set_worker_class(*native);
+  ready.mutable_ready()->set_portable_class(*portable);
   ready.mutable_ready()->set_build(fmt::format("hyades {}, renderer {}, build {}", core::kVersion,
                                                core::kRendererRevision,
                                                core::build_id().substr(0, 12)));

@@ -1,14 +1,15 @@
-# cmake -DROOT=... -DOUTPUT=... -DCOMPILER=... -P build_id.cmake: writes a header with the hash of the renderer's sources and of
-# how they are compiled. The file is touched only when the hash changes, so that nothing is compiled for nothing.
+# cmake -DROOT=... -DOUTPUT=... -DCOMPILER=... -P build_id.cmake: writes a header with the hash of the renderer's sources, and one
+# of these and of how they are compiled. The file is touched only when the hash changes, so that nothing is compiled for nothing.
 file(GLOB_RECURSE sources RELATIVE ${ROOT} ${ROOT}/core/*.cpp ${ROOT}/core/*.h)
 list(SORT sources)
-set(text "${COMPILER}\n")
+set(text "")
 foreach(source ${sources})
   file(SHA256 ${ROOT}/${source} hash)
   string(APPEND text "${source} ${hash}\n")
 endforeach()
-string(SHA256 id "${text}")
-set(header "#pragma once\n#define HYADES_BUILD_ID \"${id}\"\n")
+string(SHA256 sources_id "${text}")
+string(SHA256 id "${COMPILER}\n${text}")
+set(header "#pragma once\n#define HYADES_BUILD_ID \"${id}\"\n#define HYADES_SOURCES_ID \"${sources_id}\"\n")
 set(old "")
 if(EXISTS ${OUTPUT})
   file(READ ${OUTPUT} old)

@@ -32,6 +32,7 @@ const char* wrong_greeting(const pipe::FromRenderer& message) {
   if (!message.has_ready()) return "spoke before it was ready";
   const pipe::Ready& ready = message.ready();
   const bool long_words = ready.worker_class().size() > kMostWords ||
+                          ready.portable_class().size() > kMostWords ||
                           ready.build().size() > kMostWords || ready.worker_class().empty();
   return long_words ? "did not say what it is" : nullptr;
 }

@@ -255,6 +255,7 @@ class StateMachine {
   uint64_t kept_bytes_ = 0;
 
   std::string worker_class_;
+  std::string portable_class_;
   std::string build_;
   bool renderer_up_ = false;
   UnitClock clock_;

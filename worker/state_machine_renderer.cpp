@@ -15,6 +15,7 @@ void StateMachine::renderer_started() { clock_.child_started(); }
 
 void StateMachine::renderer_ready(const pipe::Ready& ready) {
   worker_class_ = ready.worker_class();
+  portable_class_ = ready.portable_class();
   build_ = ready.build();
   renderer_up_ = true;
   clock_.heard();

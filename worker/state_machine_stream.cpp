@@ -57,6 +57,7 @@ void StateMachine::send_hello() {
   hello.set_name(options_.name);
   hello.set_host(options_.host);
   hello.set_worker_class(worker_class_);
+  hello.set_portable_class(portable_class_);
   hello.set_build(build_);
   hello.set_threads(options_.threads);
   hello.set_memory_bytes(options_.memory_bytes);

@@ -114,6 +114,7 @@ class HYADES_PT_performance(_Panel, bpy.types.Panel):
         row.active = render.threads_mode == "FIXED"
         row.prop(render, "threads")
         layout.prop(render, "preview_pixel_size", text="Viewport Pixel Size")
+        layout.prop(context.scene.hyades, "render_class")
 
 
 class HYADES_PT_textures(_Panel, bpy.types.Panel):

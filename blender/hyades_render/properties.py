@@ -23,6 +23,10 @@ PLACES = (
     ("here", "This Machine", "By the program hyades on this machine"),
     ("farm", "Farm", "By the farm that the preferences name"),
 )
+CLASSES = (
+    ("native", "Native", "The fastest on processors. On a farm each frame is rendered by machines of one maker"),
+    ("portable", "Portable", "The same pixels on every processor, so that all machines of a farm share each frame"),
+)
 
 
 class HyadesSceneSettings(bpy.types.PropertyGroup):
@@ -71,6 +75,9 @@ class HyadesSceneSettings(bpy.types.PropertyGroup):
         name="Large Steps",
         description="How often Metropolis tries an independent sample",
         default=0.3, min=0.01, max=1.0,
+    )
+    render_class: EnumProperty(
+        name="Class", description="By which arithmetic rays meet surfaces", items=CLASSES, default="native"
     )
     denoise: EnumProperty(name="Denoise", description="What takes noise out", items=DENOISERS, default="none")
     bake: BoolProperty(

@@ -29,7 +29,7 @@ def scene_job(engine: Any, depsgraph: Any, layers: list[str], name: str = "blend
 
 
 def apply_settings(job: hyades.Job, settings: Any) -> None:
-    """Says sampling, integrator and denoising as `scene.hyades` has them."""
+    """Says sampling, integrator, class and denoising as `scene.hyades` has them."""
     job.sampling = hyades.Sampling(samples=settings.samples, seed=settings.seed)
     if settings.noise > 0:
         job.sampling.noise = settings.noise
@@ -41,6 +41,8 @@ def apply_settings(job: hyades.Job, settings: Any) -> None:
         job.integrator = integrators.Mlt(over=settings.mlt_over, large_step=settings.large_step, **depths)
     else:
         job.integrator = integrators.Path(clamp=settings.clamp, **depths)
+    if settings.render_class != "native":
+        job.render = hyades.Render(class_=settings.render_class)
     if settings.denoise != "none":
         job.denoise = True if settings.denoise == "true" else settings.denoise
 

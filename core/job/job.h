@@ -31,6 +31,7 @@ struct Job {
   FilmDesc film;
   SamplingDesc sampling;
   IntegratorDesc integrator;
+  RenderDesc render;
   CameraDesc camera;
   std::vector<TextureDesc> textures;
   std::vector<MaterialDesc> materials;

@@ -9,8 +9,8 @@ namespace {
 
 constexpr std::array<std::string_view, 6> kNamed = {"textures", "materials", "media",
                                                     "groups",   "objects",   "lights"};
-constexpr std::array<std::string_view, 6> kSections = {"frames",     "film",   "sampling",
-                                                       "integrator", "camera", "environment"};
+constexpr std::array<std::string_view, 7> kSections = {
+    "frames", "film", "sampling", "integrator", "render", "camera", "environment"};
 
 template <class Names>
 bool contains(const Names& names, std::string_view key) {

@@ -113,6 +113,7 @@ void read_job(MapReader& top, Job& job) {
   read_film(top, job.film);
   read_sampling(top, job.sampling);
   read_integrator(top, job.integrator);
+  read_render(top, job.render);
   check_splats(top, job);
   check_noise(top, job);
   read_camera(top, job.camera);

@@ -15,7 +15,7 @@
 #include "core/film/noise.h"
 #include "core/job/read_sections.h"
 
-/// frames, film, sampling, integrator: what is rendered and how.
+/// frames, film, sampling, render, integrator: what is rendered and how.
 namespace hyades::core {
 
 namespace {
@@ -174,6 +174,8 @@ void read_film(MapReader& top, FilmDesc& film) { top.map("film", "film", film); 
 void read_sampling(MapReader& top, SamplingDesc& sampling) {
   top.map("sampling", "sampling", sampling);
 }
+
+void read_render(MapReader& top, RenderDesc& render) { top.map("render", "render", render); }
 
 void read_integrator(MapReader& top, IntegratorDesc& integrator) {
   const YamlNode* node = top.find("integrator");

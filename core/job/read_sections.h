@@ -17,6 +17,7 @@ void read_frames(MapReader& top, FramesDesc& frames);
 void read_film(MapReader& top, FilmDesc& film);
 void read_sampling(MapReader& top, SamplingDesc& sampling);
 void read_integrator(MapReader& top, IntegratorDesc& integrator);
+void read_render(MapReader& top, RenderDesc& render);
 void read_camera(MapReader& top, CameraDesc& camera);
 void read_textures(MapReader& top);
 void read_materials(MapReader& top);

@@ -79,6 +79,7 @@ std::string resolved_job_text(const Job& job, int32_t frame,
   write_desc(out, "sampling", job.sampling, kOldSamplingLines);
   if (job.sampling.noise > 0.0F) out.put("noise_exposure", shown_exposure(job));
   write_desc(out, "integrator", job.integrator, kOldIntegratorLines);
+  write_desc(out, "render", job.render, {});
   write_desc(out, "camera", job.camera, kOldCameraLines);
   for (const TextureDesc& texture : job.textures) write_texture(out, texture);
   for (const MaterialDesc& material : job.materials) write_material(out, material);

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "core/base/rect.h"
+#include "core/base/render_class.h"
 #include "core/job/fields.h"
 
 namespace hyades::core {
@@ -76,6 +77,15 @@ struct SamplingDesc {
     visit.choice("sampler", self.sampler, kSamplerNames);
     visit.number("noise", self.noise, kUnitInterval);
     visit.integer("min_samples", self.min_samples, 1, int64_t{1} << 24);
+  }
+};
+
+struct RenderDesc {
+  RenderClass render_class = RenderClass::native;
+
+  template <class Self, class Visitor>
+  static void fields(Self& self, Visitor& visit) {
+    visit.choice("class", self.render_class, kRenderClassNames);
   }
 };
 

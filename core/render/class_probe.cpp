@@ -60,11 +60,14 @@ std::string reciprocal_digest() {
 
 std::string build_id() { return HYADES_BUILD_ID; }
 
-Result<Film> render_class_probe(int threads) {
+std::string sources_id() { return HYADES_SOURCES_ID; }
+
+Result<Film> render_class_probe(RenderClass which, int threads) {
   const auto assets = make_probe_assets();
   Diagnostics diagnostics;
-  const Job job = parse_job(kProbeJob, "class probe", *assets, diagnostics);
+  Job job = parse_job(kProbeJob, "class probe", *assets, diagnostics);
   if (!diagnostics.empty()) return Error{diagnostics.to_string()};
+  job.render.render_class = which;
   SceneCache cache(*assets);
   auto scene = build_scene(job, job.frames.first, cache);
   if (!scene) return scene.error().in("class probe");
@@ -77,26 +80,43 @@ Result<Film> render_class_probe(int threads) {
       .film;
 }
 
-Result<ClassProbe> probe_class(int threads) {
+Result<ClassProbe> probe_class(RenderClass which, int threads) {
+  ClassProbe probe;
+  probe.of = which;
+  auto film = render_class_probe(which, threads);
+  if (!film) return film.error();
+  probe.film = film->digest();
+  probe.elementary = elementary_digest();
+  if (which == RenderClass::portable) {
+    probe.build = sources_id();
+    return probe;
+  }
   auto isa = embree_isa();
   if (!isa) return isa.error();
-  auto film = render_class_probe(threads);
-  if (!film) return film.error();
-  return ClassProbe{film->digest(), elementary_digest(), reciprocal_digest(), build_id(),
-                    loaded_embree_version() + " " + *isa};
+  probe.build = build_id();
+  probe.reciprocals = reciprocal_digest();
+  probe.embree = loaded_embree_version() + " " + *isa;
+  return probe;
 }
 
 std::string class_of(const ClassProbe& probe) {
-  return to_hex(sha256("hyades class 1\n" + probe.film + "\n" + probe.elementary + "\n" +
+  const char* title =
+      probe.of == RenderClass::native ? "hyades class 1" : "hyades portable class 1";
+  return to_hex(sha256(title + ("\n" + probe.film) + "\n" + probe.elementary + "\n" +
                        probe.reciprocals + "\n" + probe.build + "\n" + probe.embree + "\n"));
 }
 
-Result<std::string> this_class() {
-  static const Result<std::string> measured = [] {
-    const auto probe = probe_class();
+Result<std::string> this_class(RenderClass which) {
+  const auto measure = [](RenderClass of) {
+    const auto probe = probe_class(of);
     return probe ? Result<std::string>(class_of(*probe)) : Result<std::string>(probe.error());
-  }();
-  return measured;
+  };
+  if (which == RenderClass::portable) {
+    static const Result<std::string> portable = measure(RenderClass::portable);
+    return portable;
+  }
+  static const Result<std::string> native = measure(RenderClass::native);
+  return native;
 }
 
 }  // namespace hyades::core

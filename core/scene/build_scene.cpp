@@ -101,7 +101,7 @@ class SceneBuilder {
     scene_->medium_groups = looks_.medium_groups();
     warn_of_open_bodies(*flat, cache_, *scene_);
     if (auto done = add_lamps(placements); !done) return done;
-    auto world = cache_.world(std::move(placements));
+    auto world = cache_.world(std::move(placements), job_.render.render_class);
     if (!world) return blame(*flat, world.error());
     scene_->world = *world;
     if (auto done = check_exteriors(job_, *flat, *scene_); !done) return done;

@@ -208,11 +208,15 @@ MeshClosure SceneCache::closure(const std::shared_ptr<const TriangleMesh>& mesh)
   });
 }
 
-Result<std::shared_ptr<const World>> SceneCache::world(std::vector<Placement> placements) {
+Result<std::shared_ptr<const World>> SceneCache::world(std::vector<Placement> placements,
+                                                       RenderClass which) {
   const MutexLock lock(world_mutex_);
-  if (world_ && same_placements(placements, world_placements_)) return world_;
+  if (world_ && world_class_ == which && same_placements(placements, world_placements_)) {
+    return world_;
+  }
+  world_class_ = which;
   world_placements_ = placements;
-  auto built = build_world(std::move(placements), geometry_);
+  auto built = build_world(std::move(placements), geometry_, which);
   if (!built) {
     world_.reset();
     return built.error();

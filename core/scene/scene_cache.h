@@ -131,8 +131,8 @@ class SceneCache {
   /// Whether a mesh of this cache has an inside.
   MeshClosure closure(const std::shared_ptr<const TriangleMesh>& mesh);
 
-  /// The world of `placements`; the previous one where they are the same.
-  Result<std::shared_ptr<const World>> world(std::vector<Placement> placements);
+  /// The world of `placements` in a class; the previous one where they are the same.
+  Result<std::shared_ptr<const World>> world(std::vector<Placement> placements, RenderClass which);
 
   /// Bytes of all images' pixels.
   size_t image_memory() const;
@@ -173,6 +173,7 @@ class SceneCache {
   std::shared_ptr<const Sky> sky_ HYADES_GUARDED_BY(sky_mutex_);
   GeometryCache geometry_;
   Mutex world_mutex_;
+  RenderClass world_class_ HYADES_GUARDED_BY(world_mutex_) = RenderClass::native;
   std::vector<Placement> world_placements_ HYADES_GUARDED_BY(world_mutex_);
   std::shared_ptr<const World> world_ HYADES_GUARDED_BY(world_mutex_);
 };

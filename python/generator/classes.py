@@ -1,5 +1,6 @@
 """Python classes out of the keys of jobs."""
 
+import keyword
 import re
 import textwrap
 from collections import defaultdict
@@ -8,7 +9,7 @@ from job_page import Page, Row, quoted_default
 
 # Module -> the types of the listing that it describes; those of a family (materials.lambert) follow their base.
 MODULES = {
-    "settings": ["frames", "film.filter", "film", "sampling", "color"],
+    "settings": ["frames", "film.filter", "film", "sampling", "render", "color"],
     "integrators": ["integrator"],
     "cameras": ["camera.exposure", "camera.aperture", "camera"],
     "transforms": ["transform.rotate", "transform"],
@@ -190,13 +191,18 @@ def one_key(entry: dict, row: Row) -> list[str]:
     optional = "" if default is not None or entry.get("required") else " | None"
     if entry["takes"] in ("entries", "list"):
         optional = ""
-    start = f"    {entry['key']}: {hint}{optional} = key("
+    start = f"    {attribute(entry['key'])}: {hint}{optional} = key("
     line = start + ", ".join(arguments) + ")"
     if len(line) > 100:
         line = textwrap.fill(", ".join(arguments), 96, initial_indent=" " * 8, subsequent_indent=" " * 8,
                              break_on_hyphens=False)
         line = f"{start}\n{line},\n    )"
     return [line, *docstring(row, default, bool(names))]
+
+
+def attribute(name: str) -> str:
+    """What a key is called in Python, where some names are the language's own."""
+    return name + "_" if keyword.iskeyword(name) else name
 
 
 def hint_of(entry: dict) -> tuple[str, list]:

@@ -21,7 +21,7 @@ from .farm import Farm
 from .job import Job
 from .job_types import cameras, integrators, lights, materials, media, objects, outputs, settings, textures, transforms
 from .job_types.lights import Environment, Sky
-from .job_types.settings import ColorManagement, Film, Filter, Frames, Sampling
+from .job_types.settings import ColorManagement, Film, Filter, Frames, Render, Sampling
 from .job_types.transforms import Rotation, Step
 from .mesh import MeshData, Places, Strands
 from .picture import Picture
@@ -33,8 +33,8 @@ from .values import Keys
 __all__ = [
     "ColorManagement", "Complaint", "Environment", "Farm", "FarmError", "FileRefused", "Film",
     "Filter", "Frames", "HyadesError", "Job", "JobError", "KeyRefused", "Keys", "Layers",
-    "MeshData", "Picture", "Places", "ProgramError", "Progress", "Rendering", "Rotation",
-    "Sampling", "Sky", "Step", "Strands", "cameras", "check", "find_program", "integrators", "lights",
+    "MeshData", "Picture", "Places", "ProgramError", "Progress", "Render", "Rendering",
+    "Rotation", "Sampling", "Sky", "Step", "Strands", "cameras", "check", "find_program", "integrators", "lights",
     "materials", "media", "objects", "outputs", "read_exr", "render", "settings", "textures",
     "transforms", "write_exr",
 ]

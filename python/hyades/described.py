@@ -37,6 +37,11 @@ class Key:
     hint: str = field(default="", init=False)
     """The type that the class says."""
 
+    @property
+    def in_job(self) -> str:
+        """What the job calls it: without the underscore after words of Python's own."""
+        return self.name.removesuffix("_")
+
     def __set_name__(self, owner: type, name: str) -> None:
         self.name, self.owner, self.hint = name, owner.__name__, str(vars(owner).get("__annotations__", {}).get(name, ""))
 

@@ -98,7 +98,7 @@ class Document:
         elif thing.TYPE and thing.TYPE not in thing.keys():
             node["shape"] = thing.TYPE
         for key, value in thing.said():
-            node[key.name] = self._value(key, value)
+            node[key.in_job] = self._value(key, value)
         return node
 
     def _value(self, key: Key, value: Any) -> Any:

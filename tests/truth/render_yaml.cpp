@@ -10,6 +10,7 @@
 #include "core/job/layers.h"
 #include "core/job/parse.h"
 #include "core/scene/build_scene.h"
+#include "tests/support/tested_class.h"
 
 namespace hyades::test {
 
@@ -19,6 +20,7 @@ YamlScene::YamlScene(const std::string& yaml, int32_t frame, const core::LayerSe
   core::Diagnostics diagnostics;
   job_ = core::parse_job(yaml, "test.yaml", *assets_, diagnostics);
   if (!diagnostics.empty()) throw std::runtime_error(diagnostics.to_string());
+  job_.render.render_class = tested_class();
   cache_ = std::make_unique<core::SceneCache>(*assets_);
   auto scene = core::build_scene(job_, frame, *cache_);
   if (!scene) throw std::runtime_error(scene.error().message);

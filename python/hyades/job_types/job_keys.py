@@ -8,7 +8,7 @@ from typing import ClassVar, Literal
 
 from ..described import Described, key
 from ..values import File, MediumName, FrameRange
-from .settings import ColorManagement, Film, Frames, Sampling
+from .settings import ColorManagement, Film, Frames, Render, Sampling
 from .integrators import Integrator
 from .cameras import Camera
 from .textures import Texture
@@ -41,6 +41,8 @@ class JobKeys(Described):
     """See Sampling. Default: none."""
     integrator: Integrator | None = key("map")
     """See Integrator. Default: `path`."""
+    render: Render | None = key("map")
+    """See Classes of machines. Default: none."""
     camera: Camera | None = key("map")
     """See Camera. Default: none."""
     textures: dict[str, Texture] = key("entries")

@@ -84,6 +84,16 @@ class Sampling(Described):
 
 
 @dataclass(kw_only=True, eq=False, repr=False)
+class Render(Described):
+    """Classes of machines."""
+
+    SECTIONS: ClassVar[tuple[str, ...]] = ("render",)
+    class_: Literal["native", "portable"] = key("choice", "native", names=("native", "portable"))
+    """By which arithmetic rays meet surfaces: `native` by Embree, the fastest on processors;
+    `portable` the same to the last bit on every machine."""
+
+
+@dataclass(kw_only=True, eq=False, repr=False)
 class ColorManagement(Described):
     """Colour management."""
 

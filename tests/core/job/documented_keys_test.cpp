@@ -110,6 +110,7 @@ const std::map<std::string, Place>& places() {
     p["film"] = {"film: {", {{"size", "[640, 360]"}}, "}"};
     p["film.filter"] = {"film: {filter: {", {}, "}}"};
     p["sampling"] = {"sampling: {", {}, "}"};
+    p["render"] = {"render: {", {}, "}"};
     p["integrator"] = {"integrator: {", {}, "}"};
     p["integrator.path"] = p["integrator"];
     p["integrator.bdpt"] = {"integrator: {", {{"type", "bdpt"}}, "}"};

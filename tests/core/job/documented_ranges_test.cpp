@@ -103,6 +103,7 @@ RangesIn all_ranges() {
   all.read("environment", EnvironmentDesc());
   all.read("film", FilmDesc());
   all.read("sampling", SamplingDesc());
+  all.read("render", RenderDesc());
   all.read("camera.exposure", ExposureDesc());
   for (const std::string& type : kCameraTypes) {
     CameraDesc camera;

@@ -28,7 +28,8 @@ TEST(WorkerProcess, RendersTheBitsOfASingleMachine) {
   expect_whole(coordinator, made);
   const auto seen = coordinator.seen();
   EXPECT_EQ(seen.failures.size(), 0U);
-  EXPECT_EQ(seen.hellos.front().worker_class(), *core::this_class());
+  EXPECT_EQ(seen.hellos.front().worker_class(), *core::this_class(core::RenderClass::native));
+  EXPECT_EQ(seen.hellos.front().portable_class(), *core::this_class(core::RenderClass::portable));
   EXPECT_EQ(seen.downloads, 3U);
   worker.signal(SIGTERM);
   EXPECT_EQ(worker.wait(seconds(5)), 0) << worker.log();
