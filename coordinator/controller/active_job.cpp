@@ -382,6 +382,7 @@ core::Result<std::unique_ptr<ActiveJob>> make_active_job(const StoredJob& stored
   for (const int32_t frame : active->numbers) active->frames[frame];
   v1::Job options = options_of(stored);
   active->needs = needs_of(options);
+  active->needs.render_class = job.render.render_class;
   options.set_frame_rate(core::video_frames(job, {}, active->numbers).rate);
   active->stored.options = options.SerializeAsString();
   active->stored.name = spec.name().empty() ? job.name : spec.name();

@@ -109,7 +109,7 @@ bool Diagnosis::explain_open(uint64_t id, v1::ExplainResponse& response) {
   }
   std::set<std::string> classes;  // of the workers that could take units
   for (const auto& [worker, session] : workers_.all()) {
-    if (session.may_take_units()) classes.insert(session.hello.worker_class());
+    if (session.may_take_units()) classes.insert(session.class_for(active->needs));
   }
   const bool may_begin = explain_workers(*active, !classes.empty(), reasons);
   const bool orphans = explain_frames(*active, classes, reasons);
@@ -149,7 +149,8 @@ void Diagnosis::note_obstacles() {
     } else if (!somebody) {
       obstacle = kNobody;
     } else if (const JobNeeds& needs = active->needs; needs.any()) {
-      const std::string key = fmt::format("{} {}", needs.memory, fmt::join(needs.tags, " "));
+      const std::string key = fmt::format("{} {} {}", static_cast<int>(needs.render_class),
+                                          needs.memory, fmt::join(needs.tags, " "));
       if (unmet.size() < kMostNeeds && !unmet.contains(key)) unmet[key] = unmet_needs(needs);
       if (const auto known = unmet.find(key); known != unmet.end()) obstacle = known->second;
     }

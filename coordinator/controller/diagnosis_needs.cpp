@@ -54,6 +54,7 @@ std::string Diagnosis::unmet_needs(const JobNeeds& job) const {
   if (!job.any()) return {};
   uint64_t most_memory = 0;
   bool enough_memory = false;
+  bool portable = job.render_class == core::RenderClass::native;
   bool suits = false;
   std::vector<std::string> missing = job.tags;
   for (const auto& entry : workers_.all()) {
@@ -66,11 +67,18 @@ std::string Diagnosis::unmet_needs(const JobNeeds& job) const {
     most_memory = std::max(most_memory, hello.memory_bytes());
     const bool memory = has_memory(hello, job.memory);
     enough_memory |= memory;
-    suits |= memory && std::all_of(job.tags.begin(), job.tags.end(), has);
+    const bool renders =
+        job.render_class == core::RenderClass::native || !hello.portable_class().empty();
+    portable |= renders;
+    suits |= renders && memory && std::all_of(job.tags.begin(), job.tags.end(), has);
   }
   if (suits) return {};
   if (!missing.empty()) {
     return fmt::format("it asks for workers with the tag '{}', and none is there", missing.front());
+  }
+  if (!portable) {
+    return "it is rendered in the portable class, and no worker is there that knows it: their "
+           "programs are too old";
   }
   if (!enough_memory && most_memory == 0) {
     return fmt::format("it asks for workers with {} of memory, and none is there",

@@ -74,7 +74,7 @@ JobPlan plan_of(const ActiveJob& active, int32_t tile_size, uint64_t film_memory
   plan.max_workers = options.max_workers();
   plan.max_attempts = options.max_attempts();
   plan.redundancy = options.redundancy();
-  plan.needs = needs_of(options);
+  plan.needs = active.needs;
   if (options.frame_order() == v1::FRAME_ORDER_PROGRESSIVE) plan.order = FrameOrder::progressive;
   plan.whole_frames = active.layout.layers.splats;
   plan.film_bytes = active.film_bytes;

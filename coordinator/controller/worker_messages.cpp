@@ -202,7 +202,7 @@ void WorkerSessions::on_result(WorkerId worker, const WorkerLink* link, v1::Unit
     pending->owner = session->joined_with.empty() ? session->owner : session->joined_with;
     if (const ActiveJob* active = jobs_.find(result.job())) {
       expected = {active->layout, active->region, active->key, session->hello.worker_id(),
-                  session->hello.worker_class()};
+                  session->class_for(active->needs)};
     }
   }
   std::optional<ResultRefusal> refusal = check_claim(result, expected, context_.proofs);
@@ -367,7 +367,7 @@ void WorkerSessions::send_lease(const Lease& lease) {
     frame.begun = jobs_.moment();
     jobs_.note(*active, v1::LOG_LEVEL_INFO, number, session->hello.name(), "begun");
   }
-  if (frame.worker_class.empty()) frame.worker_class = session->hello.worker_class();
+  if (frame.worker_class.empty()) frame.worker_class = session->class_for(active->needs);
 }
 
 void WorkerSessions::send_over(JobId job) {

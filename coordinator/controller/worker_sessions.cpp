@@ -60,7 +60,10 @@ std::string complaint(const v1::Hello& hello) {
   if (hello.worker_class().empty() || hello.worker_class().size() > 64) {
     return "a worker needs a class of at most 64 characters";
   }
-  if (!core::is_printable(hello.worker_class())) return "class: expected printable characters";
+  if (hello.portable_class().size() > 64) return "a portable class has at most 64 characters";
+  if (!core::is_printable(hello.worker_class()) || !core::is_printable(hello.portable_class())) {
+    return "class: expected printable characters";
+  }
   if (hello.threads() < 1 || hello.threads() > kMostThreads) return "threads: expected 1 to 4096";
   if (hello.in_hand_size() > kMostInHand) {
     return fmt::format("units in hand: at most {}", kMostInHand);
@@ -75,6 +78,7 @@ core::Result<WorkerJoined> joining(const v1::Hello& hello, const LeaseProofs& pr
   WorkerJoined joined;
   joined.threads = hello.threads();
   joined.worker_class = hello.worker_class();
+  joined.portable_class = hello.portable_class();
   joined.tags.assign(hello.tags().begin(), hello.tags().end());
   joined.memory = hello.memory_bytes();
   for (const v1::LeasedUnit& held : hello.in_hand()) {
@@ -98,6 +102,7 @@ v1::Hello without_units(const v1::Hello& hello) {
   kept.set_name(hello.name());
   kept.set_host(hello.host());
   kept.set_worker_class(hello.worker_class());
+  kept.set_portable_class(hello.portable_class());
   kept.set_build(hello.build());
   kept.set_threads(hello.threads());
   kept.set_memory_bytes(hello.memory_bytes());

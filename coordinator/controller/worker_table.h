@@ -64,6 +64,11 @@ struct WorkerSession {
   int64_t joined_ms HYADES_GUARDED_BY(state_lock) = 0;
   int64_t heard_ms HYADES_GUARDED_BY(state_lock) = 0;
 
+  /// The class in which it renders jobs that need `job`.
+  const std::string& class_for(const JobNeeds& job) const HYADES_REQUIRES(state_lock) {
+    return job.render_class == core::RenderClass::portable ? hello.portable_class()
+                                                           : hello.worker_class();
+  }
   /// Whether it is there, neither drained nor in quarantine.
   bool may_take_units() const HYADES_REQUIRES(state_lock) {
     return joined && state == v1::WORKER_STATE_ACTIVE;

@@ -116,6 +116,7 @@ struct WorkerJoined {
   /// Names the token or pool that the worker came by, which can bring any number of workers. Empty:
   /// as `credential` says.
   std::string origin = {};
+  std::string portable_class = {};  ///< empty: it renders nothing in the portable class
 };
 
 /// The worker can take `units` more. The wish stands until it is fulfilled.

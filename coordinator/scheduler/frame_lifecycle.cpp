@@ -108,7 +108,7 @@ void FrameLifecycle::open(ScheduledJob& job) {
     bool room = false;
     for (const uint32_t i : job.in_flight) {
       const FrameSlot& slot = job.slots[i];
-      if (workers_.is_lone(slot.worker_class)) {
+      if (workers_.is_lone(job, slot.worker_class)) {
         ++lone;
         continue;
       }
@@ -235,9 +235,9 @@ void FrameLifecycle::fail(ScheduledJob& job, FrameSlot& slot, std::string reason
 void FrameLifecycle::fail_or_leave(ScheduledJob& job, FrameSlot& slot, WorkerId worker,
                                    std::string reason) {
   const Worker* who = workers_.find(worker);
-  const bool others = who != nullptr && workers_.is_lone(slot.worker_class) &&
+  const bool others = who != nullptr && workers_.is_lone(job, slot.worker_class) &&
                       note_left(slot, who->origin) &&
-                      workers_.anybody_with_better_claim(job, slot, who->origin, who->worker_class);
+                      workers_.anybody_with_better_claim(job, slot, *who);
   if (!others) return fail(job, slot, std::move(reason));
   restart(job, slot);
 }
@@ -362,7 +362,7 @@ bool FrameLifecycle::is_orphaned(const ScheduledJob& job, FrameSlot& slot) {
 std::optional<TimePoint> FrameLifecycle::stands_still_since(const ScheduledJob& job,
                                                             FrameSlot& slot, bool leasing) {
   const FrameLedger& ledger = *slot.ledger;
-  const bool watched = leasing && !job.paused && workers_.is_lone(slot.worker_class) &&
+  const bool watched = leasing && !job.paused && workers_.is_lone(job, slot.worker_class) &&
                        workers_.anybody_for(job, slot.worker_class) && !ledger.all_held() &&
                        workers_.anybody_of_another(job, slot.worker_class);
   if (!watched) {

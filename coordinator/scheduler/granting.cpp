@@ -53,7 +53,7 @@ class ReadyJobs {
  public:
   ReadyJobs(const FairShare& share, const Worker& worker) {
     for (const auto& [serial, alike] : share.ready) {
-      if (!alike.group->needs.are_met(worker.tags, worker.memory)) continue;
+      if (!alike.group->needs.are_met(worker)) continue;
       rest_.emplace_back(alike.jobs.begin(), alike.jobs.end());
     }
     std::make_heap(rest_.begin(), rest_.end(), is_younger);
@@ -331,11 +331,11 @@ bool Granting::grant_from(const FramePlace& place, WorkerId id, Worker& worker, 
     const auto extent =
         slot.ledger->next(allowed, [&](uint32_t tile) { return run_length_of(job, slot, tile); });
     if (!extent) break;
-    copies_.note(place, leases_.assign(slot, *extent, id), worker.worker_class);
+    copies_.note(place, leases_.assign(slot, *extent, id), worker.class_for(job));
     extents.push_back(*extent);
   }
   if (extents.empty()) return false;
-  slot.worker_class = worker.worker_class;
+  slot.worker_class = worker.class_for(job);
   worker.wanted -= static_cast<uint32_t>(extents.size());
   leases_.grant(id, worker, place, std::move(extents));
   jobs_.update_offer(job);
@@ -466,7 +466,7 @@ bool Granting::grant_check(const FramePlace& place, WorkerId id, Worker& worker,
                            const MayTry& may_try) {
   const auto extent = place.frame().ledger->next_check(worker.witness, may_try);
   if (!extent) return false;
-  copies_.note(place, leases_.assign(place.frame(), *extent, id), worker.worker_class);
+  copies_.note(place, leases_.assign(place.frame(), *extent, id), worker.class_for(*place.job));
   --worker.wanted;
   leases_.grant(id, worker, place, {*extent});
   jobs_.update_offer(*place.job);

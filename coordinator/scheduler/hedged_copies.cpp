@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cstddef>
 #include <vector>
 
 namespace hyades::coordinator {
@@ -33,14 +34,19 @@ bool HedgedCopies::grant(WorkerId id, Worker& worker) {
 /// Those that the worker may have copies of, whoever has waited longest first.
 std::vector<HedgedCopies::Units*> HedgedCopies::for_worker(WorkerId id, const Worker& worker) {
   std::vector<Units*> found;
-  const auto late = late_.find(worker.worker_class);
-  if (late == late_.end()) return found;
-  for (const auto& [number, units] : late->second) {
-    if (found.size() == kGroupsOffered || ++looks_ > kLooks) break;
-    const ScheduledJob* job = jobs_.find(number);  // it may have ended
-    if (job == nullptr || job->paused || !ScheduledWorkers::may_join(*job, id, worker)) continue;
-    forget_over(*units);
-    if (!units->empty()) found.push_back(units);
+  for (const ClassId worker_class : worker.classes) {
+    const auto late = late_.find(worker_class);
+    if (late == late_.end()) continue;
+    const size_t others = found.size();
+    for (const auto& [number, units] : late->second) {
+      if (found.size() == others + kGroupsOffered || ++looks_ > kLooks) break;
+      const ScheduledJob* job = jobs_.find(number);  // it may have ended
+      if (job == nullptr || job->paused || !ScheduledWorkers::may_join(*job, id, worker)) continue;
+      forget_over(*units);
+      if (!units->empty()) found.push_back(units);
+    }
+    std::inplace_merge(found.begin(), found.begin() + static_cast<ptrdiff_t>(others), found.end(),
+                       [](const Units* a, const Units* b) { return a->since() < b->since(); });
   }
   return found;
 }
@@ -164,12 +170,9 @@ bool HedgedCopies::begin_round() {
     if (late) late_[it->first.worker_class].emplace_back(it->first.job, &units);
     ++it;
   }
-  const auto oldest = [](const Units* units) {
-    return units->alone.empty() ? TimePoint::max() : units->alone.front().since;
-  };
   for (auto& [worker_class, groups] : late_) {
-    std::stable_sort(groups.begin(), groups.end(), [&](const auto& a, const auto& b) {
-      return oldest(a.second) < oldest(b.second);
+    std::stable_sort(groups.begin(), groups.end(), [](const auto& a, const auto& b) {
+      return a.second->since() < b.second->since();
     });
   }
   return true;

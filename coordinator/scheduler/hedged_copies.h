@@ -65,6 +65,8 @@ class HedgedCopies {
     Candidates copied;     ///< that were copied; oldest first
     size_t swept_at = 64;  ///< length of `alone` at which stale ones are swept out
     bool empty() const { return alone.empty() && copied.empty(); }
+    /// Since when the oldest has been out.
+    TimePoint since() const { return alone.empty() ? TimePoint::max() : alone.front().since; }
   };
 
   /// How many groups are looked at in a round, for all workers together.

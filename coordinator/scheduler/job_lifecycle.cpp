@@ -9,9 +9,10 @@ namespace hyades::coordinator {
 
 void JobLifecycle::on(const JobAdded& e) {
   if (jobs_.find(e.job) != nullptr) return;
-  const Needs asked{tag_ids(e.plan.needs.tags), e.plan.needs.memory};
+  const JobNeeds& needs = e.plan.needs;
+  const Needs asked{tag_ids(needs.tags), needs.memory, needs.render_class};
   ScheduledJob& job =
-      jobs_.add(e.job, e.plan, asked, [this](const Needs& needs) { return workers_.count(needs); });
+      jobs_.add(e.job, e.plan, asked, [this](const Needs& of) { return workers_.count(of); });
   restore(job, e.restored);
   job.waiting = static_cast<uint64_t>(
       std::count_if(job.slots.begin(), job.slots.end(),
@@ -51,7 +52,7 @@ void JobLifecycle::restore(ScheduledJob& job, const RestoredJob& restored) {
     if (!slot->ledger) {
       slot->ledger =
           std::make_unique<FrameLedger>(job.grid.order(), job.plan.batches, job.plan.rounds);
-      slot->worker_class = class_id(accepted.worker_class);
+      slot->worker_class = class_id(job.plan.needs.render_class, accepted.worker_class);
       if (!aside.contains(slot->frame)) films_.take(job, *slot);
     }
     if (slot->ledger->any_held(*extent)) continue;

@@ -7,6 +7,7 @@
 #include "coordinator/scheduler/ids.h"
 #include "coordinator/scheduler/tile_grid.h"
 #include "core/base/rect.h"
+#include "core/base/render_class.h"
 #include "core/film/unit.h"
 
 namespace hyades::coordinator {
@@ -19,9 +20,12 @@ enum class FrameOrder : uint8_t {
 
 /// What a worker has to have to get units of a job.
 struct JobNeeds {
-  std::vector<std::string> tags;  ///< all of them
-  uint64_t memory = 0;            ///< bytes for scenes; 0: any
-  bool any() const { return !tags.empty() || memory > 0; }
+  std::vector<std::string> tags;                               ///< all of them
+  uint64_t memory = 0;                                         ///< bytes for scenes; 0: any
+  core::RenderClass render_class = core::RenderClass::native;  ///< in which it can render
+  bool any() const {
+    return !tags.empty() || memory > 0 || render_class != core::RenderClass::native;
+  }
 };
 
 /// What the scheduler knows of a job: no light, only how much there is to do and in which order.

@@ -54,13 +54,13 @@ void Results::on(const ResultArrived& e) {
     // Who has heard an answer may forget its film, and that there is a dispute must be known then.
     reject(e, RejectReason::not_now);
   } else if (differs) {
-    if (slot->worker_class != worker->worker_class) return reject(e, RejectReason::unknown);
+    if (slot->worker_class != worker->class_for(*job)) return reject(e, RejectReason::unknown);
     dispute(*job, *slot, *extent, *held, worker->witness, e);
   } else if (held) {
     answer_again(*job, *slot, *extent, *held, worker->witness, e);
   } else if (ledger.any_held(*extent)) {
     reject(e, RejectReason::overlap);
-  } else if (slot->worker_class != ClassId{} && slot->worker_class != worker->worker_class) {
+  } else if (slot->worker_class != ClassId{} && slot->worker_class != worker->class_for(*job)) {
     reject(e, RejectReason::unknown);
   } else if (!slot->film && !films_.has_place(*job)) {
     // It is late: its lease has ended, and the frame's film was set aside.
@@ -103,7 +103,7 @@ void Results::answer_again(ScheduledJob& job, FrameSlot& slot, const Extent& ext
 /// The film counts once it is durable. Whoever else renders the unit can stop.
 void Results::accept(ScheduledJob& job, FrameSlot& slot, const Extent& extent, Worker& worker,
                      const ResultArrived& e) {
-  slot.worker_class = worker.worker_class;
+  slot.worker_class = worker.class_for(job);
   workers_.forget_given_back(e.worker);
   worker.delivered = step_.now;
   films_.take(job, slot);
@@ -113,8 +113,8 @@ void Results::accept(ScheduledJob& job, FrameSlot& slot, const Extent& extent, W
     slot.ledger->open_dispute(extent, {e.worker, e.digest, worker.witness});
   }
   leases_.end_assignment(job, slot, extent, e.lease);
-  records_.persist(UnitRecord{job.id, {e.unit, e.digest, workers_.class_of(worker)}}, extent,
-                   {{e.worker, e.lease}});
+  records_.persist(UnitRecord{job.id, {e.unit, e.digest, workers_.name_of(slot.worker_class)}},
+                   extent, {{e.worker, e.lease}});
   lifecycle_.forgive_and_blame(job, slot, extent, e.worker);
   learn_cost(job, extent, e.render_time);
   affinity_.learn_load(job, worker, e);

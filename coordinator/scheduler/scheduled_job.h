@@ -98,15 +98,17 @@ enum class DisputeMark : uint8_t {
 
 struct FairShare;
 struct ScheduledJob;
+struct Worker;
 
 /// What a job asks of workers.
 struct Needs {
   std::vector<TagId> tags;  ///< all of them; sorted
   uint64_t memory = 0;      ///< 0: any
+  core::RenderClass render_class = core::RenderClass::native;
   auto operator<=>(const Needs&) const = default;
 
   /// Whether a worker has that; of memory 0: it knows no limit.
-  bool are_met(const std::vector<TagId>& has, uint64_t has_memory) const;
+  bool are_met(const Worker& worker) const;
 };
 
 /// Jobs that ask the same of workers, and how many workers have that.

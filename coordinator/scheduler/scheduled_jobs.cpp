@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "coordinator/scheduler/scheduled_workers.h"
+
 namespace hyades::coordinator {
 namespace {
 
@@ -11,9 +13,10 @@ ScheduledJobs::ShareOrder order_of(const FairShare& share) {
 
 }  // namespace
 
-bool Needs::are_met(const std::vector<TagId>& has, uint64_t has_memory) const {
-  return (memory == 0 || has_memory == 0 || has_memory >= memory) &&
-         std::includes(has.begin(), has.end(), tags.begin(), tags.end());
+bool Needs::are_met(const Worker& worker) const {
+  return worker.class_in(render_class) != ClassId{} &&
+         (memory == 0 || worker.memory == 0 || worker.memory >= memory) &&
+         std::includes(worker.tags.begin(), worker.tags.end(), tags.begin(), tags.end());
 }
 
 ScheduledJob* ScheduledJobs::find(JobId id) const {
@@ -118,9 +121,9 @@ void ScheduledJobs::update_offer(ScheduledJob& job) {
 }
 
 /// What nobody who is there may render stands before no other's.
-void ScheduledJobs::count_worker(const std::vector<TagId>& tags, uint64_t memory, bool one_more) {
+void ScheduledJobs::count_worker(const Worker& worker, bool one_more) {
   for (auto& [needs, group] : needs_) {
-    if (!needs.are_met(tags, memory)) continue;
+    if (!needs.are_met(worker)) continue;
     group.workers += one_more ? 1 : -1;
     if (group.workers > (one_more ? 1 : 0)) continue;
     for (const auto& [id, job] : group.jobs) list_ready(*job, has_work(*job));

@@ -56,7 +56,7 @@ class ScheduledJobs {
   ScheduledJob& add(JobId id, const JobPlan& plan, const Needs& needs,
                     const std::function<uint64_t(const Needs&)>& count);
   /// There is a worker with these tags and so much memory more, or less.
-  void count_worker(const std::vector<TagId>& tags, uint64_t memory, bool one_more);
+  void count_worker(const Worker& worker, bool one_more);
   /// Forgets the job, and what it had on its way to the disk, and says so.
   void end(ScheduledJob& job, bool cancelled);
   /// Ends the job where all its frames are done or have failed; it must not be used any more then.

@@ -51,7 +51,9 @@ int claim_of(const FrameSlot& slot, Origin origin, ClassId worker_class, TimePoi
 
 }  // namespace
 
-ClassId class_id(const std::string& name) { return ClassId{number_of(name)}; }
+ClassId class_id(core::RenderClass of, const std::string& name) {
+  return ClassId{number_of(of == core::RenderClass::portable ? "portable " + name : name)};
+}
 
 std::vector<TagId> tag_ids(const std::vector<std::string>& tags) {
   std::vector<TagId> ids;
@@ -76,18 +78,28 @@ Worker& ScheduledWorkers::add(const WorkerJoined& joined) {
   worker.witness = witness_of(joined);
   worker.origin = origin_of(joined);
   worker.threads = joined.threads;
-  worker.worker_class = class_id(joined.worker_class);
   worker.tags = tag_ids(joined.tags);
   worker.memory = joined.memory;
   worker.in_line = step_.now;
   worker.joined = step_.now;
   threads_ += worker.threads;
   worker.barred = quarantined(joined.worker);
-  Class& of_it = classes_[worker.worker_class];
-  of_it.name = joined.worker_class;
-  ++of_it.connected;
+  join_class(worker, core::RenderClass::native, joined.worker_class);
+  if (!joined.portable_class.empty()) {
+    join_class(worker, core::RenderClass::portable, joined.portable_class);
+  }
   if (!worker.barred) count_able(joined.worker, worker, true);
   return worker;
+}
+
+void ScheduledWorkers::join_class(Worker& worker, core::RenderClass which,
+                                  const std::string& name) {
+  const ClassId id = class_id(which, name);
+  worker.classes[static_cast<size_t>(which)] = id;
+  Class& of_it = classes_[id];
+  of_it.name = name;
+  of_it.of = which;
+  ++of_it.connected;
 }
 
 void ScheduledWorkers::remove(WorkerId id) {
@@ -96,8 +108,10 @@ void ScheduledWorkers::remove(WorkerId id) {
   if (worker.waiting != 0) waiting_.erase(worker.waiting);
   threads_ -= worker.threads;
   if (!worker.barred) count_able(id, worker, false);
-  const auto of_it = classes_.find(worker.worker_class);
-  if (--of_it->second.connected == 0) classes_.erase(of_it);
+  for (const ClassId worker_class : worker.classes) {
+    const auto of_it = classes_.find(worker_class);
+    if (of_it != classes_.end() && --of_it->second.connected == 0) classes_.erase(of_it);
+  }
   workers_.erase(it);
 }
 
@@ -133,11 +147,12 @@ void ScheduledWorkers::pardon(WorkerId id) {
   failures_.erase(id);
 }
 
-bool ScheduledWorkers::is_lone(ClassId worker_class) const {
+bool ScheduledWorkers::is_lone(const ScheduledJob& job, ClassId worker_class) const {
   if (worker_class == ClassId{}) return false;
   const auto it = classes_.find(worker_class);
   const size_t origins = it == classes_.end() ? 0 : it->second.origins.size();
-  return origins <= 1 && classes_at_work_ > origins;
+  const size_t at_work = classes_at_work_[static_cast<size_t>(job.plan.needs.render_class)];
+  return origins <= 1 && at_work > origins;
 }
 
 std::vector<Origin> ScheduledWorkers::origins_of(ClassId worker_class) const {
@@ -151,7 +166,7 @@ std::vector<Origin> ScheduledWorkers::origins_of(ClassId worker_class) const {
 bool ScheduledWorkers::anybody_of_another(const ScheduledJob& job, ClassId worker_class) const {
   return std::any_of(workers_.begin(), workers_.end(), [&](const auto& entry) {
     const Worker& other = entry.second;
-    return is_at_work(other) && other.worker_class != worker_class && suits(job, other) &&
+    return is_at_work(other) && other.class_for(job) != worker_class && suits(job, other) &&
            !is_slow(other);
   });
 }
@@ -165,7 +180,7 @@ void ScheduledWorkers::note_slow(ClassId worker_class, TimePoint since,
     return !entry.second.barred && !origins.contains(entry.second.origin);
   });
   for (const auto& [id, worker] : workers_) {
-    if (worker.barred || worker.worker_class != worker_class) continue;
+    if (worker.barred || worker.class_in(it->second.of) != worker_class) continue;
     const bool held = std::find(holders.begin(), holders.end(), id) != holders.end();
     if (!held && worker.delivered && *worker.delivered >= since) continue;
     slow_witnesses_[worker.witness] = until;
@@ -189,23 +204,20 @@ bool ScheduledWorkers::forgive_slow() {
 }
 
 bool ScheduledWorkers::anybody_with_better_claim(const ScheduledJob& job, const FrameSlot& slot,
-                                                 Origin origin, ClassId worker_class) const {
-  const int claim = claim_of(slot, origin, worker_class, step_.now);
+                                                 const Worker& worker) const {
+  const int claim = claim_of(slot, worker.origin, worker.class_for(job), step_.now);
   return std::any_of(workers_.begin(), workers_.end(), [&](const auto& entry) {
     const Worker& other = entry.second;
-    return claim_of(slot, other.origin, other.worker_class, step_.now) < claim &&
+    return claim_of(slot, other.origin, other.class_for(job), step_.now) < claim &&
            is_at_work(other) && suits(job, other) && !is_slow(other);
   });
 }
 
 bool ScheduledWorkers::may_render(const ScheduledJob& job, const FrameSlot& slot,
                                   const Worker& worker) const {
-  if (slot.worker_class != ClassId{}) return slot.worker_class == worker.worker_class;
-  if (!slot.left.empty() &&
-      anybody_with_better_claim(job, slot, worker.origin, worker.worker_class)) {
-    return false;
-  }
-  return !is_slow(worker) || !anybody_of_another(job, worker.worker_class);
+  if (slot.worker_class != ClassId{}) return slot.worker_class == worker.class_for(job);
+  if (!slot.left.empty() && anybody_with_better_claim(job, slot, worker)) return false;
+  return !is_slow(worker) || !anybody_of_another(job, worker.class_for(job));
 }
 
 bool ScheduledWorkers::anybody_for(const ScheduledJob& job, ClassId worker_class) const {
@@ -219,17 +231,21 @@ bool ScheduledWorkers::anybody_for(const ScheduledJob& job, ClassId worker_class
 
 /// One worker more or less that may get units.
 void ScheduledWorkers::count_able(WorkerId id, const Worker& worker, bool one_more) {
-  Class& of_it = classes_[worker.worker_class];
-  std::map<Origin, uint32_t>& origins = of_it.origins;
-  if (one_more) {
-    of_it.able.insert(id);
-    if (origins.empty()) ++classes_at_work_;
-    ++origins[worker.origin];
-    return;
+  for (const ClassId worker_class : worker.classes) {
+    if (worker_class == ClassId{}) continue;
+    Class& of_it = classes_[worker_class];
+    std::map<Origin, uint32_t>& origins = of_it.origins;
+    size_t& at_work = classes_at_work_[static_cast<size_t>(of_it.of)];
+    if (one_more) {
+      of_it.able.insert(id);
+      if (origins.empty()) ++at_work;
+      ++origins[worker.origin];
+      continue;
+    }
+    of_it.able.erase(id);
+    if (const auto it = origins.find(worker.origin); --it->second == 0) origins.erase(it);
+    if (origins.empty()) --at_work;
   }
-  of_it.able.erase(id);
-  if (const auto it = origins.find(worker.origin); --it->second == 0) origins.erase(it);
-  if (origins.empty()) --classes_at_work_;
 }
 
 void ScheduledWorkers::update_waiting(WorkerId id, Worker& worker) {
@@ -244,20 +260,20 @@ void ScheduledWorkers::update_waiting(WorkerId id, Worker& worker) {
 
 /// Whether the worker could render units of the job at all.
 bool ScheduledWorkers::suits(const ScheduledJob& job, const Worker& worker) {
-  return job.group->needs.are_met(worker.tags, worker.memory);
+  return job.group->needs.are_met(worker);
 }
 
 uint64_t ScheduledWorkers::count(const Needs& needs) const {
-  return static_cast<uint64_t>(std::count_if(
-      workers_.begin(), workers_.end(),
-      [&](const auto& entry) { return needs.are_met(entry.second.tags, entry.second.memory); }));
+  return static_cast<uint64_t>(
+      std::count_if(workers_.begin(), workers_.end(),
+                    [&](const auto& entry) { return needs.are_met(entry.second); }));
 }
 
 bool ScheduledWorkers::may_try(const ScheduledJob& job, WorkerId id, const Worker& worker,
                                const std::vector<WorkerId>& blamed,
                                const std::vector<Witness>& heard) const {
   return !std::binary_search(blamed.begin(), blamed.end(), id) ||
-         !anybody_besides(blamed, heard, job, worker.worker_class);
+         !anybody_besides(blamed, heard, job, worker.class_for(job));
 }
 
 bool ScheduledWorkers::anybody_besides(const std::vector<WorkerId>& tried,

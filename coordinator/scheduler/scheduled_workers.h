@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <map>
@@ -27,7 +28,8 @@ struct Worker {
   Witness witness{};
   Origin origin{};
   uint32_t threads = 1;
-  ClassId worker_class{};
+  /// By RenderClass; 0: it renders nothing in that.
+  std::array<ClassId, core::kRenderClassNames.size()> classes{};
   std::vector<TagId> tags;          ///< sorted
   uint64_t memory = 0;              ///< 0: no limit
   std::vector<FrameId> scenes;      ///< that it should have in memory, the latest last
@@ -42,6 +44,10 @@ struct Worker {
   bool barred = false;                 ///< gets nothing
   std::set<uint64_t> leases;
   uint32_t units = 0;  ///< that it has under all of them
+
+  ClassId class_in(core::RenderClass which) const { return classes[static_cast<size_t>(which)]; }
+  /// Its class in which the job is rendered.
+  ClassId class_for(const ScheduledJob& job) const { return class_in(job.plan.needs.render_class); }
 };
 
 /// The connected workers: their classes and tags, who may render what, who waits for work; and what
@@ -86,13 +92,12 @@ class ScheduledWorkers {
 
   // Classes.
 
-  /// The class of a worker that is there.
-  const std::string& class_of(const Worker& worker) const {
-    return classes_.at(worker.worker_class).name;
-  }
-  /// Whether the class may be somebody's invention, so that others must not wait for it: all of it
-  /// that may get units has one origin, or none, and others may get units too.
-  bool is_lone(ClassId worker_class) const;
+  /// The name of a class of which a worker is there.
+  const std::string& name_of(ClassId worker_class) const { return classes_.at(worker_class).name; }
+  /// Whether a class in which the job is rendered may be somebody's invention, so that others must
+  /// not wait for it: all of it that may get units has one origin, or none, and others may get
+  /// units too.
+  bool is_lone(const ScheduledJob& job, ClassId worker_class) const;
   /// Where those of the class come from that may get units.
   std::vector<Origin> origins_of(ClassId worker_class) const;
   /// Whether a worker of another class is at work, or asks for some, that may begin with frames of
@@ -107,10 +112,10 @@ class ScheduledWorkers {
   /// Forgets who is slow no more. Whether there was somebody.
   bool forgive_slow();
   /// Whether somebody who is not slow and at work could render the frame, which was left by
-  /// `slot.left`, with a better claim than a worker of this origin and class: one of an origin that
-  /// did not leave it, else of a class that did not.
-  bool anybody_with_better_claim(const ScheduledJob& job, const FrameSlot& slot, Origin origin,
-                                 ClassId worker_class) const;
+  /// `slot.left`, with a better claim than `worker`: one of an origin that did not leave it, else
+  /// of a class that did not.
+  bool anybody_with_better_claim(const ScheduledJob& job, const FrameSlot& slot,
+                                 const Worker& worker) const;
   /// Whether units of the frame are for the worker's class: it has begun it, or nobody has. Who is
   /// slow begins only what nobody else can, and so does whoever has left the frame before.
   bool may_render(const ScheduledJob& job, const FrameSlot& slot, const Worker& worker) const;
@@ -142,12 +147,14 @@ class ScheduledWorkers {
   /// A class of which some worker is connected.
   struct Class {
     std::string name;
+    core::RenderClass of = core::RenderClass::native;
     uint32_t connected = 0;
     std::set<WorkerId> able;             ///< those that may get units
     std::map<Origin, uint32_t> origins;  ///< of these: how many of each
   };
 
   static bool suits(const ScheduledJob& job, const Worker& worker);
+  void join_class(Worker& worker, core::RenderClass which, const std::string& name);
   void count_able(WorkerId id, const Worker& worker, bool one_more);
   bool is_slow(const Worker& worker) const;
 
@@ -160,7 +167,8 @@ class ScheduledWorkers {
   std::map<uint64_t, WorkerId> waiting_;
   uint64_t next_waiting_ = 1;
   std::map<ClassId, Class> classes_;
-  size_t classes_at_work_ = 0;                   ///< that have origins
+  /// By RenderClass: those that have origins.
+  std::array<size_t, core::kRenderClassNames.size()> classes_at_work_{};
   std::map<Witness, TimePoint> slow_witnesses_;  ///< until when
   struct SlowOrigin {
     TimePoint since;  ///< those who came before are not meant
@@ -170,7 +178,7 @@ class ScheduledWorkers {
 };
 
 /// The class of this name, by a hash: a table of names could be filled by whoever invents many.
-ClassId class_id(const std::string& name);
+ClassId class_id(core::RenderClass of, const std::string& name);
 /// The tags of these names, by their hashes; sorted, each once.
 std::vector<TagId> tag_ids(const std::vector<std::string>& tags);
 

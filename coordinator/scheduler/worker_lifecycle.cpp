@@ -29,7 +29,7 @@ void WorkerLifecycle::on(const WorkerJoined& e) {
   }
   on(WorkerLost{e.worker});
   Worker& worker = workers_.add(e);
-  jobs_.count_worker(worker.tags, worker.memory, true);
+  jobs_.count_worker(worker, true);
   for (const UnitInHand& held : e.in_hand) {
     const auto before = had.extract(place_of(held));
     adopt(e.worker, worker, held, before ? before.mapped() : step_.now);
@@ -48,11 +48,11 @@ void WorkerLifecycle::adopt(WorkerId id, Worker& worker, const UnitInHand& held,
     step_.say(Revoke{id, held.lease, held.job, held.unit});
     return;
   }
-  slot->worker_class = worker.worker_class;
+  slot->worker_class = worker.class_for(*job);
   const FramePlace place{job, job->index_of(*slot)};
   Assignment& assignment = leases_.assign(*slot, *extent, id);
   assignment.since = since;
-  copies_.note(place, assignment, worker.worker_class);
+  copies_.note(place, assignment, slot->worker_class);
   leases_.grant(id, worker, place, {*extent}, true);
   Affinity::remember_scene(worker, place.id(), false);
   affinity_.settle(worker, place.id());
@@ -78,7 +78,7 @@ void WorkerLifecycle::on(const WorkerLost& e) {
   if (worker == nullptr) return;
   leases_.release_all(*worker, false);
   affinity_.settle(*worker, std::nullopt);
-  jobs_.count_worker(worker->tags, worker->memory, false);
+  jobs_.count_worker(*worker, false);
   workers_.remove(e.worker);
   // A unit that failed with others may now be theirs to try again.
   step_.work_appeared = true;

@@ -157,6 +157,8 @@ void SimulatedWorld::act(const Merge& a) {
   if (!is_stored(a.job, a.unit)) fail("a film is merged that is not durable");
   if (frame_of(a.job, a.unit.frame).over) fail("a film is merged into a frame that is over");
   const AcceptedUnit& accepted = records_.at(a.record);
+  const bool portable = jobs_.at(a.job).plan.needs.render_class == core::RenderClass::portable;
+  if ((accepted.worker_class == kPortable) != portable) fail("a film is of another kind of class");
   add_to_film(jobs_.at(a.job), accepted, generation_ + 1);
   if (!real_store_) return;
   SimFrame& frame = frame_of(a.job, a.unit.frame);

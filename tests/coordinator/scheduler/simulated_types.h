@@ -24,6 +24,9 @@ struct Happening {
   }
 };
 
+/// The portable class of all workers.
+inline const std::string kPortable = "portable";
+
 /// A unit in a worker's hands.
 struct UnitHeld {
   JobId job{};

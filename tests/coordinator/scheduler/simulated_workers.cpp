@@ -63,6 +63,7 @@ void SimulatedWorld::connect(size_t i) {
   ++w.session;
   w.asked = 0;
   WorkerJoined hello{id_of(i), static_cast<uint32_t>(w.threads), w.name, {}, w.tags, w.memory};
+  hello.portable_class = kPortable;
   for (const auto& [order, held] : w.held) {
     hello.in_hand.push_back({held.lease, held.job, held.unit});
   }

@@ -91,9 +91,12 @@ void SimulatedWorld::make_job(JobId id) {
     if (chance(0.3)) plan.needs.tags.emplace_back("quiet");
     if (chance(0.4)) plan.needs.memory = static_cast<uint64_t>(number(1, 8));
   }
+  // Not by chance: worlds of old have to stay what they were.
+  if (choosy_ && static_cast<uint64_t>(id) == 2) {
+    plan.needs.render_class = core::RenderClass::portable;
+  }
   plan.shuffle = static_cast<uint64_t>(number(0, 1));
-  // Where there are workers enough of one class to check each other. Not by chance: worlds of old
-  // have to stay what they were.
+  // Where there are workers enough of one class to check each other. Not by chance either.
   if (corrupt_ && static_cast<uint64_t>(id) != 1) plan.redundancy = 40;
   // Not by chance either.
   if (static_cast<uint64_t>(id) == 3 && !plan.whole_frames) {
