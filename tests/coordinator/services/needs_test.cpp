@@ -53,6 +53,31 @@ TEST(Needs, AreMetOrNamedAlsoAfterARestart) {
   EXPECT_EQ(plain.delivered() + small.delivered(), 0U);
 }
 
+TEST(Needs, OfThePortableClassAreMetByMachinesOfAllMakers) {
+  FarmWorld world;
+  world.start();
+  const uint64_t job = world.submit_text(FarmWorld::document(4) + "render: {class: portable}\n");
+  const auto script = [&](int number, const char* native, const char* portable) {
+    ScriptedWorker::Script s = world.script(number);
+    s.worker_class = native;
+    s.portable_class = portable;
+    s.unit_time = std::chrono::milliseconds(5);
+    return s;
+  };
+  const ScriptedWorker old(world.address, script(1, "class-a", ""));
+  EXPECT_TRUE(eventually([&] {
+    return world.explain(job).find("in the portable class") != std::string::npos;
+  })) << world.explain(job);
+  const ScriptedWorker one(world.address, script(2, "class-a", "class-p"));
+  const ScriptedWorker two(world.address, script(3, "class-b", "class-p"));
+  ASSERT_TRUE(world.wait_for(job, v1::JOB_STATE_DONE));
+  for (int frame = 1; frame <= 4; ++frame) world.expect_truth(job, frame);
+  EXPECT_EQ(world.get(job).frames(0).worker_class(), "class-p");
+  EXPECT_EQ(old.delivered(), 0U);
+  EXPECT_GT(one.delivered(), 0U);
+  EXPECT_GT(two.delivered(), 0U);
+}
+
 TEST(Needs, OfOlderJobStoresAreTakenOver) {
   FarmWorld world;
   world.start();

@@ -36,6 +36,7 @@ class ScriptedWorker {
     std::string instance;  ///< of its process; one of its own without
     std::string name = "scripted/1";
     std::string worker_class = "class-a";
+    std::string portable_class;
     std::string token;
     bool keeps_token = false;  ///< takes one of its machine's own
     uint32_t threads = 2;
@@ -190,6 +191,7 @@ class ScriptedWorker {
     hello.set_keeps_token(script_.keeps_token);
     hello.set_name(script_.name);
     hello.set_worker_class(script_.worker_class);
+    hello.set_portable_class(script_.portable_class);
     hello.set_threads(script_.threads);
     for (const std::string& tag : script_.tags) hello.add_tags(tag);
     hello.set_memory_bytes(script_.memory);
