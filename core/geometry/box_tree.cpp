@@ -139,8 +139,8 @@ void set_box(BoxTree::Sides& sides, size_t child, const Bounds& box) {
 }
 
 /// That of no child. Halves of it are no numbers.
-constexpr float kNever = std::numeric_limits<float>::max();
-const Bounds kNoBox{Vec3(kNever), Vec3(-kNever)};
+constexpr float kFarthest = std::numeric_limits<float>::max();
+const Bounds kNoBox{Vec3(kFarthest), Vec3(-kFarthest)};
 
 BoxTree::Node empty_node() {
   BoxTree::Node node{};

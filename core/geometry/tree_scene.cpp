@@ -18,18 +18,17 @@
 namespace hyades::core {
 namespace {
 
-constexpr float kNever = std::numeric_limits<float>::infinity();
 constexpr uint32_t kNoVertex = std::numeric_limits<uint32_t>::max();
 
 /// Directions and origins of one space: those of the world, of a copy or of an instance.
-struct LocalRay {
+struct SpaceRay {
   Vec3d origin;
   Vec3d direction;
   SlabRay slabs;
   WatertightLine line;
 
-  LocalRay(const Vec3d& o, const Vec3d& d) : origin(o), direction(d), slabs(o, d), line(o, d) {}
-  LocalRay in(const Affine& to_local) const {
+  SpaceRay(const Vec3d& o, const Vec3d& d) : origin(o), direction(d), slabs(o, d), line(o, d) {}
+  SpaceRay in(const Affine& to_local) const {
     return {to_local.point(origin), to_local.vector(direction)};
   }
 };
@@ -101,10 +100,10 @@ class TreeWalk {
     const TreeScene::Geometry* instance = nullptr;
   };
 
-  LocalRay world() const { return {Vec3d(ray_.origin), Vec3d(ray_.direction)}; }
+  SpaceRay world() const { return {Vec3d(ray_.origin), Vec3d(ray_.direction)}; }
 
   /// True ends the walk; so do those below.
-  bool walk(const TreeScene& scene, const LocalRay& local, const Place& place) {
+  bool walk(const TreeScene& scene, const SpaceRay& local, const Place& place) {
     return scene.tree_.traverse(
         local.slabs, time_, t_min_, limit_, [&](uint32_t first, uint32_t count) {
           for (uint32_t i = first; i < first + count; ++i) {
@@ -120,7 +119,7 @@ class TreeWalk {
         });
   }
 
-  bool meet_standing(const TreeScene& scene, uint32_t number, const LocalRay& local,
+  bool meet_standing(const TreeScene& scene, uint32_t number, const SpaceRay& local,
                      const Place& place) {
     const std::array<Vec3, 3>& corners = scene.corners_[number];
     const std::array<Vec3d, 3> exact{Vec3d(corners[0]), Vec3d(corners[1]), Vec3d(corners[2])};
@@ -136,7 +135,7 @@ class TreeWalk {
 
   /// Where the ray meets a triangle, if that is of interest.
   std::optional<double> meet_corners(const std::array<Vec3d, 3>& corners,
-                                     const LocalRay& local) const {
+                                     const SpaceRay& local) const {
     if (!local.line.meets(corners)) return std::nullopt;
     const auto met = meet_triangle(local.origin, local.direction, Triangle(corners));
     if (!met || !is_wanted(met->t)) return std::nullopt;
@@ -144,7 +143,7 @@ class TreeWalk {
   }
 
   bool meet(const TreeScene& scene, const TreeScene::Geometry& geometry, uint32_t primitive,
-            const LocalRay& local, const Place& place) {
+            const SpaceRay& local, const Place& place) {
     const float enters =
         enter_box(local.slabs, scene.bounds_at(geometry, primitive, time_), t_min_);
     if (enters > limit_) return false;
@@ -220,7 +219,7 @@ class TreeWalk {
     best_ = hit;
     best_t_ = t;
     rank_ = rank;
-    limit_ = std::nextafter(static_cast<float>(t), kNever);
+    limit_ = std::nextafter(static_cast<float>(t), kInfinity);
     return false;
   }
 
