@@ -10,40 +10,13 @@ from unittest import mock
 import bpy
 import hyades
 from addon import AddOnTest
+from exporting import ExportTest
+from told_surfaces import Surfaces, Values  # noqa: F401  (tests of this run)
+from told_volumes import Volumes  # noqa: F401
 
 from hyades_render import animation, complaints, moving_copies, panels, preferences
 from hyades_render.export import objects
 from hyades_render.export.nodes import graph
-
-
-class ExportTest(AddOnTest):
-    """A scene of the lit cube; `export` gives the job and what it complained about."""
-
-    def export(self) -> tuple[hyades.Job, str]:
-        exported = animation.job_of(self.scene, frames=None, name="export")
-        return exported.job, "\n".join(map(str, exported.complaints))
-
-    def material(self, name: str, shader: str = "ShaderNodeBsdfDiffuse", color=(0.5, 0.5, 0.5)):
-        """A material of one shader, and that node."""
-        made = bpy.data.materials.new(name)
-        made.use_nodes = True
-        made.node_tree.nodes.clear()
-        output = made.node_tree.nodes.new("ShaderNodeOutputMaterial")
-        node = made.node_tree.nodes.new(shader)
-        node.inputs[0].default_value = (*color, 1)
-        made.node_tree.links.new(node.outputs[0], output.inputs["Surface"])
-        return made, node
-
-    def collection(self, *things, copies: int):
-        """Puts objects into a collection that empties show, two metres apart."""
-        kit = bpy.data.collections.new("Kit")
-        for thing in things:
-            kit.objects.link(thing)
-        for at in range(copies):
-            empty = bpy.data.objects.new(f"Copy {at}", None)
-            empty.instance_type, empty.instance_collection = "COLLECTION", kit
-            empty.location.x = 2 * at
-            self.scene.collection.objects.link(empty)
 
 
 class Copies(ExportTest):
@@ -297,6 +270,36 @@ class NotThere(ExportTest):
         self.assertIn("light 'Light': it is there for rays of glossy too", said)
         self.assertIn("world 'World': it is there for rays of diffuse too", said)
         self.assertFalse(job.environment.visible_to_camera)
+
+    def test_links_of_light_are_told(self) -> None:
+        things = bpy.data.collections.new("Things")
+        for name in ("Light", "Cube"):
+            links = getattr(bpy.data.objects[name], "light_linking", None)
+            if links is None:
+                self.skipTest("since Blender 4.0")
+            links.receiver_collection = links.blocker_collection = things
+        self.assertEqual(self.export()[1], "")  # empty ones link nothing
+        things.objects.link(bpy.data.objects["Cube"])
+        said = self.export()[1]
+        for where in ("light 'Light'", "object 'Cube'"):
+            self.assertIn(f"{where}: its light falls on all things: light linking is left out", said)
+            self.assertIn(f"{where}: all things throw shadows in its light: shadow linking is left out", said)
+
+    def test_lamps_near_things_for_their_size_are_told(self) -> None:
+        lamp = bpy.data.objects["Light"]  # the cube ends 1 m from the origin
+        words = "light 'Light': it is near 'Cube' for its radius"
+        for kind, height, radius, told in (
+            ("POINT", 2, 0.19, False),
+            ("POINT", 2, 0.22, True),
+            ("SPOT", 2, 0.22, True),
+            ("POINT", 0, 0.5, False),  # within its bounds
+        ):
+            lamp.data.type, lamp.location = kind, (0, 0, height)
+            lamp.data.shadow_soft_size = radius
+            self.assertEqual(words in self.export()[1], told, (kind, height, radius))
+        if hasattr(lamp.data, "use_soft_falloff"):
+            lamp.location.z, lamp.data.use_soft_falloff = 2, False
+            self.assertEqual(self.export()[1], "")
 
     def test_holdouts_and_catchers_are_told(self) -> None:
         cube = bpy.data.objects["Cube"]

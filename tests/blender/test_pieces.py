@@ -9,6 +9,7 @@ import addon  # noqa: F401  (finds the add-on)
 import bpy
 import hyades
 import numpy
+import vdb_file
 from addon import AddOnTest
 from hyades import Keys, MeshData, Step, cameras, lights, materials, objects, textures
 from hyades.farm.states import JobState, read_state
@@ -447,7 +448,7 @@ class NamedFiles(AddOnTest):
 
     def test_volumes_are_taken_where_links_lead_to_volumes(self) -> None:
         smoke = self.folder / "smoke.vdb"
-        smoke.write_bytes(b"not looked at here")
+        vdb_file.write(smoke, {"density": numpy.ones((8, 8, 8))})
         data = bpy.data.volumes.new("Smoke")
         self.scene.collection.objects.link(bpy.data.objects.new("Smoke", data))
         fog = bpy.data.materials.new("Fog")
@@ -458,11 +459,15 @@ class NamedFiles(AddOnTest):
         for path in (smoke, self.link("link.vdb", smoke)):
             data.filepath = str(path)
             self.assertEqual(str(self.exported()[0].objects["Smoke"].interior.density.vdb), str(path))
-        for path in (self.link("stolen.vdb", self.key), self.key):
+        broken = self.folder / "broken.vdb"
+        broken.write_bytes(b"no volume")
+        words = "there is no file .*"
+        for path in (self.link("stolen.vdb", self.key), self.key, broken):
             data.filepath = str(path)
             job, complaints = self.exported()
             self.assertNotIn("Smoke", job.objects)
-            self.assertRegex(complaints, f"object 'Smoke': there is no file .*{path.name}")
+            words = "Blender reads no volume from the file .*" if path == broken else words
+            self.assertRegex(complaints, f"object 'Smoke': {words}{path.name}")
 
 
 if __name__ == "__main__":

@@ -11,6 +11,8 @@ from hyades import integrators
 from .context import Context
 
 _FILTERS = {"BOX": "box", "GAUSSIAN": "gaussian", "BLACKMAN_HARRIS": "blackman-harris"}
+_BLUR = 1.0
+"""Filter Glossy as every scene of Blender has it, which is hardly seen."""
 
 
 def add_film(context: Context) -> None:
@@ -36,6 +38,11 @@ def _tell_of_settings(context: Context) -> None:
     layer = context.depsgraph.view_layer_eval
     if getattr(cycles, "use_fast_gi", False):
         context.complain("render", "Fast GI Approximation is left out: all light is rendered")
+    off = [kind for kind in ("reflective", "refractive") if not getattr(cycles, f"caustics_{kind}", True)]
+    if off:
+        context.complain("render", f"caustics are there, {' and '.join(off)} ones too: Light Paths switches them off in Cycles")
+    if getattr(cycles, "blur_glossy", 0.0) > _BLUR:
+        context.complain("render", "Filter Glossy is left out: what is seen by way of rough things stays as sharp as it is")
     if render.pixel_aspect_x != render.pixel_aspect_y:
         context.complain("output", "pixels that are not square are not supported; square ones are used")
     if render.film_transparent and getattr(cycles, "film_transparent_glass", False):

@@ -101,7 +101,7 @@ def _of_curves(data: Any) -> Optional[hyades.Strands]:
         return None
     points = numpy.empty(3 * count, "f4")
     data.attributes["position"].data.foreach_get("vector", points)
-    radii = numpy.full(count, 0.01, "f4")  # Blender's where none are given
+    radii = numpy.full(count, 0.005, "f4")  # Cycles' where none are given
     if "radius" in data.attributes:
         data.attributes["radius"].data.foreach_get("value", radii)
     begins = numpy.empty(len(data.curves), "i4")

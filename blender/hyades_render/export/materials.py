@@ -32,6 +32,8 @@ class Made:
     is_baked: bool
     displacement: Optional[Displacement] = None
     """How the surface is moved."""
+    is_one_sided: bool = False
+    """It shines to where its surface faces alone."""
 
 
 def material_of(context: Context, part: PartOfSurface, data: Any) -> Made:
@@ -103,4 +105,4 @@ def _translated(translator: Translator, data: Any) -> Made:
     # What is not there at all shines as much as it says.
     emission = closure.emission if glows else values.quotient(closure.emission, values.held(closure.opacity))
     seen = (translator.uv_map, translator.color_attribute, translator.baked)
-    return Made(material, emission, medium, *seen, displacement)
+    return Made(material, emission, medium, *seen, displacement, closure.is_one_sided)

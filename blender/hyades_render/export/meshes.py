@@ -8,6 +8,13 @@ import hyades
 import numpy
 
 Array = Any
+_KINDS = {"FLOAT": ("value", 1, "float32"), "INT": ("value", 1, "int32"), "INT8": ("value", 1, "int8"),
+          "BOOLEAN": ("value", 1, "bool"), "FLOAT_VECTOR": ("vector", 3, "float32"), "FLOAT2": ("vector", 2, "float32"),
+          "QUATERNION": ("value", 4, "float32")}
+"""Of attributes, by Blender's type: how it calls a value, of how many numbers, of which kind."""
+_SOME = 1 << 16
+_FAR = 0.766
+"""The cosine of 40 degrees."""
 
 
 class Origin(NamedTuple):
@@ -107,19 +114,17 @@ class Surface:
     def attribute(self, name: str) -> Optional[Array]:
         """(c, 3) of any attribute; None: there is none of that name, or of a kind that is no number."""
         attribute = self.mesh.attributes.get(name)
-        kinds = {"FLOAT": ("value", 1), "INT": ("value", 1), "BOOLEAN": ("value", 1), "FLOAT_VECTOR": ("vector", 3), "FLOAT2": ("vector", 2)}
         if attribute is None:
             return None  # Cycles knows no groups of vertices either
         if attribute.data_type in ("FLOAT_COLOR", "BYTE_COLOR"):
             return self._on_corners(attribute, self._array(f"color {name}", attribute.data, "color", 4))[:, :3]
-        if attribute.data_type not in kinds:
+        if attribute.data_type not in _KINDS or (attribute.data_type == "INT8" and bpy_version() < (4, 0, 0)):
             return None
-        key, width = kinds[attribute.data_type]
-        kind = {"INT": "int32", "BOOLEAN": "bool"}.get(attribute.data_type, "float32")
+        key, width, kind = _KINDS[attribute.data_type]
         found = self._array(f"attribute {name}", attribute.data, key, width, kind).reshape(-1, width).astype("float64")
         found = numpy.repeat(found, 3, axis=1) if width == 1 else found
         found = numpy.concatenate([found, numpy.zeros((len(found), 1))], axis=1) if width == 2 else found
-        return self._on_corners(attribute, found)
+        return self._on_corners(attribute, found[:, :3])
 
     def _on_corners(self, attribute: Any, values: Array) -> Array:
         if attribute.domain == "CORNER":
@@ -128,7 +133,21 @@ class Surface:
             return values[self.corner_vertices]
         if attribute.domain == "FACE":
             return numpy.repeat(values, self._array("face_sizes", self.mesh.polygons, "loop_total", 1, "int32"), axis=0)
-        return numpy.zeros((len(self.corner_vertices), values.shape[1]))  # of edges: corners have none
+        return self._of_edges(attribute, values)[self.corner_vertices]
+
+    def _of_edges(self, attribute: Any, values: Array) -> Array:
+        """(v, n): what vertices have of their edges' values: the mean. From Blender 4 on whole numbers stay whole, and
+        switches are on where one of them is."""
+        ends = self._array("edges", self.mesh.edges, "vertices", 2, "int32").reshape(-1)
+        count = len(self.mesh.vertices)
+        number = numpy.maximum(numpy.bincount(ends, minlength=count), 1)
+        columns = [numpy.bincount(ends, numpy.repeat(column, 2), count) / number for column in values.T]
+        means = numpy.stack(columns, axis=1)
+        if bpy_version() < (4, 0, 0):
+            return means
+        if attribute.data_type == "BOOLEAN":
+            return (means > 0) * 1.0
+        return numpy.floor(means + 0.5) if attribute.data_type in ("INT", "INT8") else means
 
     def generated(self) -> Array:
         """(v, 3): 0 to 1 over the bounds of the mesh, as Blender's texture space has them."""
@@ -163,6 +182,21 @@ def _shading(mesh: Any) -> tuple[str, Optional[Array]]:
     if domain == "corner" and hasattr(mesh, "free_normals_split"):
         mesh.free_normals_split()
     return domain, flat.reshape(-1, 3)
+
+
+def leaning(surface: Surface) -> float:
+    """The share of the area where shading normals lean far from their triangles, of many triangles by some of them."""
+    domain, normals = surface.shading()
+    if domain == "face":
+        return 0.0
+    every = slice(None, None, len(surface.vertex_triangles) // _SOME + 1)
+    vertices = surface.vertex_triangles[every]
+    corners = surface.positions[vertices].astype("float64")
+    across = numpy.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    leant = normals[vertices if domain == "point" else surface.triangles[every]]
+    size = numpy.linalg.norm(across, axis=1)
+    is_far = (leant * across[:, None]).sum(axis=2) < _FAR * size[:, None]
+    return float((is_far.mean(axis=1) * size).sum() / max(float(size.sum()), 1e-30))
 
 
 def part(surface: Surface, chosen: Any, uv_map: Optional[str], color: Optional[str], atlas: Any) -> hyades.MeshData:

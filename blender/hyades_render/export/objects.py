@@ -15,12 +15,13 @@ from .context import Context, free_name
 from .hair import add_curves, add_hair, has_hair
 from .lights import PlacedLight, add_light
 from .materials import Made, material_of
-from .meshes import Origin, Surface, part
+from .meshes import Origin, Surface, leaning, part
 from .nodes import values
 from .nodes.displacement import displaced
 from .nodes.evaluate.noise import hashed
 from .nodes.surface import PartOfSurface
 from .places import MatrixPlaces
+from .soft_lamps import Nearness
 from .visibility import LayerFlags, is_seen
 from .volumes import add_volume
 
@@ -28,6 +29,8 @@ _WITH_SURFACE = {"MESH", "CURVE", "SURFACE", "META", "FONT"}
 _WITHOUT = {"CAMERA", "EMPTY", "LATTICE", "ARMATURE", "SPEAKER", "LIGHT_PROBE", "GPENCIL", "GREASEPENCIL"}
 
 
+_MOST_LEANING = 0.25
+"""Of a mesh, from which on pictures were seen to differ (docs/blender.md)."""
 _MOST_OWN = 64
 """Copies of one thing that may look different each: each may bring a picture of its own."""
 
@@ -70,7 +73,7 @@ class _Copies(NamedTuple):
 def add_objects(context: Context) -> None:
     """Adds what has a surface, and the lamps, to the job."""
     copies: dict[Any, _Copies] = {}
-    flags = LayerFlags(context)
+    flags, nearness = LayerFlags(context), Nearness()
     for instance in context.depsgraph.object_instances:
         # Blender may give the object of an instance for this step alone: all is taken from it here.
         object = instance.object
@@ -89,6 +92,9 @@ def add_objects(context: Context) -> None:
             _add_hair_of(context, instance, object, flags.is_indirect(instance))
         if instance.show_self:
             _add(context, copies, instance, object, flags.is_indirect(instance))
+            if not instance.is_instance:
+                nearness.add(object, instance.matrix_world)
+    nearness.tell(context)
     for one in copies.values():
         _place(context, one)
 
@@ -193,6 +199,9 @@ def pieces_of(context: Context, object: Any, matrix: Any, origin: Origin) -> lis
         if mesh is None:
             return []
         surface = Surface(mesh, object, axes.array(matrix), origin)
+        if leaning(surface) > _MOST_LEANING:
+            what = "its normals lean far from its faces: Cycles loses light there, Hyades none (10 to 30 % of a block, more on cards)"
+            context.complain(f"object '{object.name}'", what)
         slots = surface.slots
         kinds = numpy.unique(slots)
         parts = [PartOfSurface(surface, slots == slot if len(kinds) > 1 else slice(None)) for slot in kinds]
@@ -215,7 +224,7 @@ def _piece(context: Context, whole: PartOfSurface, data: Any) -> Piece:
     mesh = part(piece.surface, piece.chosen, made.uv_map, made.color_attribute, atlas)
     body = objects.Mesh(mesh=mesh, material=made.material, interior=made.interior)
     if not values.is_constant(made.emission, 0):
-        body.emit = objects.Emit(color=values.held(made.emission, 0.0, 1e18), radiance=1, two_sided=True)
+        body.emit = objects.Emit(color=values.held(made.emission, 0.0, 1e18), radiance=1, two_sided=not made.is_one_sided)
     return Piece(body, made, whole.is_of_object)
 
 

@@ -16,6 +16,7 @@ def is_seen(context: Context, object: Any) -> bool:
     """Whether the camera sees an object; complains where other rays do not."""
     where = f"object '{object.name}'"
     _tell(context, where, [ray for ray in _OF_OBJECTS if not getattr(object, f"visible_{ray}")])
+    _tell_of_links(context, where, object)
     if object.is_holdout:
         context.complain(where, "jobs have no holdouts: it is seen")
     if object.is_shadow_catcher:
@@ -26,6 +27,7 @@ def is_seen(context: Context, object: Any) -> bool:
 def tell_of_lamp(context: Context, where: str, object: Any) -> None:
     """Complains where rays of one kind do not meet a lamp's light."""
     _tell(context, where, [ray for ray in _OF_LAMPS if not getattr(object, f"visible_{ray}")])
+    _tell_of_links(context, where, object)
     if getattr(getattr(object.data, "cycles", None), "max_bounces", 1024) < getattr(getattr(context.scene, "cycles", None), "max_bounces", 12):
         context.complain(where, "its Max Bounces are those of the scene")
 
@@ -40,6 +42,20 @@ def is_world_seen(context: Context, world: Any) -> bool:
 def _tell(context: Context, where: str, hidden: list[str]) -> None:
     if hidden:
         context.complain(where, f"it is there for rays of {', '.join(hidden)} too: only the camera's can be kept from it")
+
+
+def _tell_of_links(context: Context, where: str, object: Any) -> None:
+    """Complains where light is for some things alone, or some alone are in its way: since Blender 4.0."""
+    links = getattr(object, "light_linking", None)
+    if _has_things(links, "receiver_collection"):
+        context.complain(where, "its light falls on all things: light linking is left out")
+    if _has_things(links, "blocker_collection"):
+        context.complain(where, "all things throw shadows in its light: shadow linking is left out")
+
+
+def _has_things(links: Any, name: str) -> bool:
+    found = getattr(links, name, None)
+    return found is not None and len(found.all_objects) > 0  # empty ones link nothing
 
 
 class LayerFlags:

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import math
 import os
-from typing import Any, Optional
+from collections.abc import Mapping, Set
+from typing import Any, NamedTuple, Optional
 
 import hyades
 import numpy
@@ -13,35 +15,62 @@ from . import axes
 from .context import Context
 from .files import may_be_sent
 from .nodes import graph, values
-from .nodes.evaluate.blackbody import STEFAN
 from .nodes.graph import Output
 from .nodes.translator import Translator
+from .nodes.volumes import heat_of, medium_of_node
 
 _ENDS = {".vdb", ".nvdb"}
+_NUMBERS, _COLORS = {"FLOAT", "DOUBLE"}, {"VECTOR_FLOAT"}
+"""Blender's types of grids that jobs have."""
+_KELVIN = 1500.0
 _FACES = [[0, 3, 2, 1], [4, 5, 6, 7], [0, 1, 5, 4], [1, 2, 6, 5], [2, 3, 7, 6], [3, 0, 4, 7]]
+
+
+class _Field(NamedTuple):
+    """What a Volume object's file holds, and how large it is shown."""
+
+    path: str
+    kinds: Optional[Mapping[str, str]]
+    """Blender's types of its grids by their names; None: Blender does not read such files."""
+    voxels: Mapping[str, numpy.ndarray]
+    """The axes (3, 3) of their voxels, as columns, in the object's space."""
+    scale: float
+    """By how much lengths of its space are longer in the world, where densities are those of its own space; else 1."""
 
 
 def add_volume(context: Context, object: Any, matrix: Any) -> None:
     """A Volume object as a box that is filled with what its file says."""
     data, where = object.data, f"object '{object.name}'"
-    path = _file(context, data)
     if not data.filepath:
         context.complain(where, "only volumes of files are supported, none that modifiers make; it is left out")
         return
+    is_read = data.grids.load()  # a sequence's file of the frame is not known before
+    path = _file(data)
     if path is None:
         context.complain(where, f"there is no file {data.filepath}, expected .vdb or .nvdb, or a link to one")
         return
+    if not is_read and not path.lower().endswith(".nvdb"):
+        context.complain(where, f"Blender reads no volume from the file {path}: {data.grids.error_message}; it is left out")
+        return
+    grids = {grid.name: grid for grid in data.grids} if is_read else {}
+    kinds = {name: grid.data_type for name, grid in grids.items()} if is_read else None
+    voxels = {name: axes.array(grid.matrix_object)[:3, :3] for name, grid in grids.items()}
     slot = object.material_slots[0].material if len(object.material_slots) else None
-    medium = _medium(context, context.override or slot, path)
-    if medium is None:
+    found = _shader(context, context.override or slot)
+    if found is None:
         context.complain(where, "it has no material with a volume; it is left out")
         return
-    box = objects.Mesh(mesh=_box(object.bound_box), material=materials.NullMaterial(), interior=medium)
+    translator, shader = found
+    field = _Field(path, kinds, voxels, _scale(data, matrix))
+    medium = _medium(translator, shader, field, where)
+    if medium is None:
+        return
+    box = objects.Mesh(mesh=_box(object.bound_box, field.voxels), material=materials.NullMaterial(), interior=medium)
     box.transform = axes.steps(axes.placed(matrix))
     context.add_object(object.name, box)
 
 
-def _file(context: Context, data: Any) -> Optional[str]:
+def _file(data: Any) -> Optional[str]:
     """The file of the current frame."""
     import bpy
 
@@ -50,49 +79,93 @@ def _file(context: Context, data: Any) -> Optional[str]:
     return path if may_be_sent(path, _ENDS) else None
 
 
-def _medium(context: Context, material: Any, path: str) -> Optional[media.Medium]:
+def _scale(data: Any, matrix: Any) -> float:
+    """As Cycles has it: how much longer a diagonal becomes."""
+    if data.render.space != "OBJECT":
+        return 1.0
+    return max(float(numpy.linalg.norm(matrix[:3, :3] @ numpy.ones(3))) / math.sqrt(3), 1e-9)
+
+
+def _shader(context: Context, material: Any) -> Optional[tuple[Translator, Output]]:
+    """The shader of volumes that a material has; None: it has none."""
     if material is None or not material.use_nodes:
         return None
     translator = Translator(context, f"material '{material.name}'")
     output = graph.output_node(material.node_tree, "OUTPUT_MATERIAL")
     end = graph.find_input(output, (), "Volume") if output is not None else None
     found = graph.source(end) if end is not None else None
-    if not isinstance(found, Output):
-        return None
+    return (translator, found) if isinstance(found, Output) else None
+
+
+def _medium(translator: Translator, found: Output, field: _Field, where: str) -> Optional[media.Medium]:
+    """What fills a file's grid. None: there is nothing to be seen, with a complaint where Blender shows something."""
     if found.node.type not in ("PRINCIPLED_VOLUME", "VOLUME_SCATTER", "VOLUME_ABSORPTION"):
         translator.complain(found.node, "only one shader of volumes is supported for files; it is left out")
         return None
-    return _of_node(translator, found, path)
-
-
-def _of_node(translator: Translator, found: Output, path: str) -> media.Medium:
-    from .nodes.volumes import medium_of_node
-
-    made = medium_of_node(translator, found)
-    grid = "density"
-    name = found.input("Density Attribute")
-    if name is not None and name.socket.default_value:
-        grid = str(name.socket.default_value)
-    made.density = media.Density(vdb=path, grid=grid, place="native")
-    heat = found.input("Blackbody Intensity")
-    if heat is not None and values.number(translator.constant(heat)) > 0:
-        temperature = found.input("Temperature Attribute").socket.default_value or "temperature"
-        kelvin = values.number(translator.constant(found.input("Temperature"), 1000.0))
-        strength = values.number(translator.constant(heat)) * STEFAN * 1500.0**4 / numpy.pi
-        made.emission = media.Emission(temperature=temperature, kelvin=kelvin, strength=float(strength))
-    elif made.emission and isinstance(made.emission, list):
-        strongest = max(made.emission)
-        color = [part / strongest for part in made.emission]
-        made.emission = media.Emission(color=color, strength=strongest)
+    grid = _attribute(found, "Density Attribute") or "density"
+    if not _asks_for_grids(found):
+        translator.complain(found.node, "it asks for no grid of the file: nothing is there, as in Cycles")
+        return None
+    if not _has(translator.context, field, grid, _NUMBERS, where, "it is left out"):
+        return None
+    heat = heat_of(translator, found)
+    name = _attribute(found, "Temperature Attribute")
+    is_hot = heat.share > 0 and bool(name) and _has(
+        translator.context, field, name, _NUMBERS, where, "all of it has one temperature")
+    made = medium_of_node(translator, found, 1 / field.scale, not is_hot)
+    made.density = media.Density(vdb=field.path, grid=grid, place="native")
+    if grid in field.voxels:  # Cycles has values in the middle of voxels, OpenVDB at their corners
+        made.density.at = axes.numbers(field.voxels[grid] @ numpy.full(3, 0.5))
+    tint = _attribute(found, "Color Attribute")
+    if tint and _has(translator.context, field, tint, _COLORS, where, "its colour is left out"):
+        made.density.tint = tint
+        if any(values.color(translator.constant(found.input("Absorption Color"), 0.0))):
+            translator.complain(found.node, f"what the grid '{tint}' takes of light is absorbed, whatever Absorption Color says")
+    emission = made.emission if isinstance(made.emission, list) else None
+    if is_hot:
+        # The job's are in proportion to the fourth power of the temperature, from 1500 K.
+        strength = heat.strength(_KELVIN) / field.scale
+        made.emission = media.Emission(color=list(heat.tint), temperature=name, kelvin=heat.kelvin, strength=strength)
+        if emission is not None:
+            translator.complain(found.node, "it shines as a black body alone: Emission is left out")
+    elif emission is not None:
+        strongest = max(emission)
+        made.emission = media.Emission(color=[part / strongest for part in emission], strength=strongest)
         translator.complain(found.node, "what shines follows the density")
     return made
 
 
-def _box(corners: Any) -> hyades.MeshData:
-    """The bounds of an object, a little wider."""
+def _asks_for_grids(found: Output) -> bool:
+    """Whether a shader looks at what a file holds: of others Cycles shows nothing."""
+    if found.node.type != "PRINCIPLED_VOLUME":
+        return any(end.is_linked for end in found.node.inputs)
+    looks = {"Density Attribute": "Density", "Temperature Attribute": "Blackbody Intensity"}
+    ends = [found.input(name) for at, name in looks.items() if _attribute(found, at)]
+    return any(end.socket.is_linked or end.socket.default_value > 0 for end in ends if end is not None)
+
+
+def _attribute(found: Output, name: str) -> str:
+    """The name of a grid that a shader looks at; "": none."""
+    end = found.input(name)
+    return str(end.socket.default_value) if end is not None else ""
+
+
+def _has(context: Context, field: _Field, grid: str, wanted: Set[str], where: str, instead: str) -> bool:
+    """Whether the file has a grid of one of these types; complains where it has not."""
+    if field.kinds is None or field.kinds.get(grid) in wanted:
+        return True
+    there = ", ".join(f"'{name}'" for name, kind in field.kinds.items() if kind in wanted) or "none"
+    kind = "colours" if wanted is _COLORS else "numbers"
+    context.complain(where, f"its file has no grid '{grid}' of {kind}, expected one of {there}: {instead}")
+    return False
+
+
+def _box(corners: Any, voxels: Mapping[str, numpy.ndarray]) -> hyades.MeshData:
+    """The bounds of an object, wider by what lies between the outermost values of its grids and nothing."""
     points = numpy.array([tuple(corner) for corner in corners])
     low, high = points.min(axis=0), points.max(axis=0)
-    more = 0.001 * (high - low).max()
+    far = [numpy.full(3, 0.001 * (high - low).max()), *(1.5 * numpy.abs(one).sum(axis=1) for one in voxels.values())]
+    more = numpy.max(far, axis=0)
     low, high = low - more, high + more
     rows = [(x, y, z) for z in (low[2], high[2]) for x, y in ((low[0], low[1]), (high[0], low[1]), (high[0], high[1]),
                                                               (low[0], high[1]))]

@@ -115,7 +115,7 @@ def wood() -> None:
     camera((0, -14, 5), (0, 0, 0.5), lens=32)
 
 
-@scene(samples=640, block=0.1)
+@scene(samples=640, block=0.1, complaints=("object 'Plate': its normals lean far from its faces",))
 def machine() -> None:
     # Bevelled parts, text, pipes and a mesh of lamps, out of focus before and behind.
     sized()

@@ -334,6 +334,55 @@ def vertex_colors() -> None:
     camera((0, -4, 0), (0, 0, 0))
 
 
+def of_edges(kind: str) -> None:
+    """A board that shows what its edges say: numbers that Cycles hands to vertices."""
+    made = material(node="ShaderNodeEmission")
+    said_by = node(made, "ShaderNodeAttribute")
+    said_by.attribute_name = "Said"
+    link(made, said_by.outputs["Color"], shader_of(made).inputs["Color"])
+    mesh = primitive("grid", made, turn=(90, 0, 0), size=3, x_subdivisions=7, y_subdivisions=5).data
+    numbers = numpy.random.default_rng(1).random(len(mesh.edges))
+    mesh.attributes.new("Said", kind, "EDGE").data.foreach_set("value", numbers if kind == "FLOAT" else numbers > 0.5)
+    camera((0, -4, 0), (0, 0, 0))
+
+
+@scene(samples=64)
+def numbers_of_edges() -> None:
+    of_edges("FLOAT")
+
+
+@scene(samples=64)
+def switches_of_edges() -> None:
+    of_edges("BOOLEAN")
+
+
+@scene(samples=64)
+def normals_of_faces() -> None:
+    # True Normal is that of a face, however smooth it looks.
+    made = material(node="ShaderNodeEmission")
+    bright = node(made, "ShaderNodeVectorMath")
+    bright.operation = "ABSOLUTE"
+    link(made, node(made, "ShaderNodeNewGeometry").outputs["True Normal"], bright.inputs[0])
+    link(made, bright.outputs[0], shader_of(made).inputs["Color"])
+    primitive("ico_sphere", made, subdivisions=2, smooth=True, radius=1.4)
+    camera((0, -6, 0), (0, 0, 0))
+
+
+@scene(samples=64)
+def glowing_colors() -> None:
+    # Black bodies from 600 to 3000 K, side by side.
+    made = material(node="ShaderNodeEmission", Strength=0.3)
+    place, heat = node(made, "ShaderNodeSeparateXYZ"), node(made, "ShaderNodeMath")
+    heat.operation = "MULTIPLY_ADD"
+    heat.inputs[1].default_value, heat.inputs[2].default_value = 2400, 600
+    body = node(made, "ShaderNodeBlackbody")
+    link(made, node(made, "ShaderNodeTexCoord").outputs["UV"], place.inputs[0])
+    link(made, place.outputs["X"], heat.inputs[0])
+    link(made, heat.outputs[0], body.inputs[0])
+    link(made, body.outputs[0], shader_of(made).inputs["Color"])
+    hang(made)
+
+
 @scene(samples=64)
 def second_uv_map() -> None:
     made, texture = board("ShaderNodeTexImage", coordinates=None, properties={"image": picture(), "interpolation": "Closest"})

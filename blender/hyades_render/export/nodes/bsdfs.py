@@ -4,23 +4,33 @@ from __future__ import annotations
 
 from typing import Any
 
+import bpy
 from hyades import materials
 
 from . import values
 from .closures import Closure, shader
 from .graph import Output
 from .normals import normal_keys
+from .principled_inputs import tell_of_method
+from .principled_layers import fuzz_like
 from .translator import Translator
 from .values import held
 
 _DEEP = 128
 """Depth of paths from which on bodies are about as bright as they are."""
+_ROUGH = 0.2001
+"""Roughness of matt surfaces up to which those of Blender until 4.2 look the same, within 4 % of a block."""
+_FACETS = {"BECKMANN": "Beckmann's", "ASHIKHMIN_SHIRLEY": "Ashikhmin and Shirley's"}
 
 
 def _roughness(translator: Translator, output: Output) -> Any:
-    if getattr(output.node, "distribution", "") == "SHARP":
+    kind = getattr(output.node, "distribution", "")
+    if kind == "SHARP":
         return 0.0
-    return held(translator.number(output.input("Roughness")))
+    roughness = held(translator.number(output.input("Roughness")))
+    if kind in _FACETS and not values.is_constant(roughness, 0):
+        translator.complain(output.node, f"its facets are those of GGX, not {_FACETS[kind]}: highlights have another shape")
+    return roughness
 
 
 def _keeps_light(output: Output) -> bool:
@@ -33,6 +43,9 @@ def diffuse(translator: Translator, output: Output) -> Closure:
     roughness = held(translator.number(output.input("Roughness")))
     if not values.is_constant(roughness, 0):
         made.roughness = roughness
+        is_rough = values.is_texture(roughness) or values.number(roughness) > _ROUGH
+        if bpy.app.version < (4, 3) and is_rough:  # which loses light until there
+            translator.complain(output.node, "what is rough loses no light: it is brighter, most where it is seen at an angle")
     return Closure(made)
 
 
@@ -86,8 +99,11 @@ def refraction(translator: Translator, output: Output) -> Closure:
 @shader("BSDF_VELVET", "BSDF_SHEEN")
 def sheen(translator: Translator, output: Output) -> Closure:
     translator.complain(output.node, "fuzz is that of Estevez and Kulla, another model")
-    roughness = translator.number(output.input("Sigma", "Roughness"), 0.5)
-    return Closure(materials.Sheen(color=translator.color(output.input("Color")), roughness=held(roughness, 0.0, 1.0)))
+    roughness = held(translator.number(output.input("Sigma", "Roughness"), 0.5))
+    color = translator.color(output.input("Color"))
+    if getattr(output.node, "distribution", "") == "MICROFIBER":
+        color, roughness = fuzz_like(translator, output, color, roughness)
+    return Closure(materials.Sheen(color=color, roughness=roughness))
 
 
 @shader("SUBSURFACE_SCATTERING")
@@ -110,6 +126,7 @@ def subsurface_of(
         translator.complain(output.node, what)
     far = [max(part * scale, 1e-6) for part in values.color(translator.constant(radius, 0.01))]
     made = materials.Subsurface(color=held(color), radius=far)
+    tell_of_method(translator, output)
     g = values.number(translator.constant(anisotropy, 0.0))
     if g:
         made.g = held(g, -0.99, 0.99)

@@ -24,6 +24,8 @@ class Closure:
     opacity: Value = 1.0
     """The share that is there. It is not in the material yet."""
     medium: Optional[media.Medium] = None
+    is_one_sided: bool = False
+    """It shines to where its surface faces, not to both sides."""
     mixed_opacity: bool = field(default=False)
     """Its parts have opacities of their own; `opacity` is their mean."""
 
@@ -74,7 +76,18 @@ def mix_shader(translator: Translator, output: Output) -> Closure:
     if by_angle is not None:
         return by_angle
     whole = translator.context.moves and _may_change(output)
-    return blend(first, second, held(translator.number(end, 0.5)), whole)
+    return _sided(translator, output, blend(first, second, held(translator.number(end, 0.5)), whole), first, second)
+
+
+def _sided(translator: Translator, output: Output, whole: Closure, *parts: Closure) -> Closure:
+    """`whole`, which shines to the sides to which its parts do."""
+    if any(whole is one for one in parts):
+        return whole
+    sides = {one.is_one_sided for one in parts if not values.is_constant(one.emission, 0)}
+    if len(sides) > 1:
+        translator.complain(output.node, "what shines to one side and to both shines to both")
+    whole.is_one_sided = sides == {True}
+    return whole
 
 
 def _may_change(output: Output) -> bool:
@@ -131,13 +144,16 @@ def add_shader(translator: Translator, output: Output) -> Closure:
         shines = not all(values.is_constant(other.emission, 0) for other in (first, second) if other is not one)
         if shines and values.is_texture(one.opacity):
             translator.complain(output.node, "where all light goes straight through, it does not shine")
-        return Closure(one.material, emission, one.opacity, medium, one.mixed_opacity)
+        made = Closure(one.material, emission, one.opacity, medium, mixed_opacity=one.mixed_opacity)
+        return _sided(translator, output, made, first, second)
     if all(_doubled(one.material) for one in (first, second)):
         made = blend(first, second, 0.5)
-        return Closure(made.material, emission, made.opacity, medium, made.mixed_opacity)
+        made.emission, made.medium = emission, medium
+        return _sided(translator, output, made, first, second)
     translator.complain(output.node, "the sum of these shaders would be more than all light; their mean is used")
     made = blend(first, second, 0.5)
-    return Closure(made.material, emission, made.opacity, medium, made.mixed_opacity)
+    made.emission, made.medium = emission, medium
+    return _sided(translator, output, made, first, second)
 
 
 def _doubled(material: Optional[materials.Material]) -> bool:

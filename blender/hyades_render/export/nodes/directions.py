@@ -28,6 +28,9 @@ class Directions(Points):
     def normal(self) -> Array:
         return self.directions
 
+    def true_normal(self) -> Array:
+        return self.directions
+
     def generated(self) -> Array:
         return self.directions
 

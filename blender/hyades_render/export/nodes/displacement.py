@@ -78,38 +78,84 @@ def _parts(material: Any) -> list[Any]:
 def displaced(displacement: Displacement, part: PartOfSurface) -> PartOfSurface:
     """The part with its vertices moved along their smooth normals."""
     surface = part.surface
-    vertices = surface.corner_vertices
     try:
         offsets = displacement.offsets(part)
     except Inexpressible as why:
         displacement.translator.complain(why.node, f"{why.why}; the surface stays where it is")
         return part
-    normals = _smooth_normals(surface.positions, vertices[surface.triangles])
-    far = numpy.zeros(len(surface.positions))
-    far[vertices[part.triangles.reshape(-1)]] = offsets
-    moved = (surface.positions + normals * far[:, None]).astype("float32")
-    result = PartOfSurface(_Moved(surface, moved), part.chosen)
+    points, positions = _points(surface)
+    normals = _smooth_normals(positions, points[surface.triangles])
+    far = numpy.zeros(len(positions))
+    far[points[part.triangles.reshape(-1)]] = offsets
+    moved = (positions + normals * far[:, None]).astype("float32")
+    result = PartOfSurface(_Moved(surface, points, moved), part.chosen)
     result.atlas, result.is_of_object = part.atlas, part.is_of_object
     return result
 
 
-class _Moved(Surface):
-    """A surface whose vertices are elsewhere."""
+def _points(surface: Surface) -> tuple[Array, Array]:
+    """(c,): which point each corner is, and (p, 3): where they are. They are the vertices; but Cycles tears meshes apart
+    that are smooth in parts, along the edges that are not."""
+    vertices = surface.corner_vertices
+    if not _is_torn(surface):
+        return vertices, surface.positions
+    rows = numpy.concatenate([vertices[:, None], numpy.round(surface.corner_normals() * 1000)], axis=1).astype("int64")
+    _, first, points = numpy.unique(rows, axis=0, return_index=True, return_inverse=True)
+    return points.reshape(-1), surface.positions[vertices[first]]
 
-    def __init__(self, surface: Surface, positions: Array) -> None:
+
+def _is_torn(surface: Surface) -> bool:
+    """Until Blender 4 auto smooth tears, since then edges that are marked as sharp."""
+    mesh = surface.mesh
+    if hasattr(mesh, "use_auto_smooth"):
+        return bool(mesh.use_auto_smooth)
+    sharp = numpy.empty(len(mesh.edges), bool)
+    mesh.edges.foreach_get("use_edge_sharp", sharp)
+    return surface.shading()[0] == "corner" and bool(sharp.any())
+
+
+class _Moved(Surface):
+    """A surface whose vertices are elsewhere, and may be more."""
+
+    def __init__(self, surface: Surface, points: Array, positions: Array) -> None:
         self.mesh, self.object, self.matrix, self.origin = surface.mesh, surface.object, surface.matrix, surface.origin
+        self._whole = surface
         self._read = dict(surface._read)
-        self._read["positions"] = positions
+        triangles = points[surface.triangles]
+        self._read |= {"positions": positions, "corner_vertices": points, "vertex_triangles": triangles}
         if surface.shading()[0] != "face":
-            normals = _smooth_normals(positions, surface.corner_vertices[surface.triangles])
-            self._read["shading"] = ("point", normals.astype("float32"))
+            normals = _smooth_normals(positions, triangles).astype("float32")
+            self._read["shading"] = self._shaded(normals)
+
+    def _on_corners(self, attribute: Any, values: Array) -> Array:
+        return self._whole._on_corners(attribute, values)  # which knows the mesh's own vertices
+
+    def _shaded(self, normals: Array) -> tuple[str, Array]:
+        """As smooth as the mesh's faces were."""
+        smooth = numpy.empty(len(self.mesh.polygons), bool)
+        self.mesh.polygons.foreach_get("use_smooth", smooth)
+        if smooth.all():
+            return "point", normals
+        counts = self._array("face_sizes", self.mesh.polygons, "loop_total", 1, "int32")
+        faces = self._array("triangle_faces", self.mesh.loop_triangles, "polygon_index", 1, "int32")
+        across = _across(self.positions[self.vertex_triangles].astype("float64"))
+        own = numpy.stack([numpy.bincount(faces, column, len(smooth)) for column in across.T], axis=1)
+        own /= numpy.maximum(numpy.linalg.norm(own, axis=1, keepdims=True), 1e-30)
+        is_smooth = numpy.repeat(smooth, counts)[:, None]
+        at_corners = numpy.where(is_smooth, normals[self.corner_vertices], numpy.repeat(own, counts, axis=0))
+        return "corner", at_corners.astype("float32")
+
+
+def _across(corners: Array) -> Array:
+    """(t, 3): along the normals of triangles (t, 3, 3), as long as they are large."""
+    return numpy.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
 
 
 def _smooth_normals(positions: Array, triangles: Array) -> Array:
     """(v, 3): the mean of the triangles around each vertex, by their angles."""
     corners = positions[triangles].astype("float64")
     result = numpy.zeros((len(positions), 3))
-    face = numpy.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    face = _across(corners)
     face /= numpy.maximum(numpy.linalg.norm(face, axis=1, keepdims=True), 1e-30)
     for i in range(3):
         a, b = corners[:, (i + 1) % 3] - corners[:, i], corners[:, (i + 2) % 3] - corners[:, i]

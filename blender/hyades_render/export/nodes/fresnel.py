@@ -36,11 +36,14 @@ def _two_sides(translator: Translator, found: Output, first, second):
     if not solid or any(isinstance(one.material, through) for one in (first, second)):
         translator.complain(found.node, "sides that let light through cannot differ; both are mixed by half")
         return blend(first, second, 0.5)
-    if not all(values.is_constant(one.emission, 0) for one in (first, second)):
-        translator.complain(found.node, "both sides shine alike, by half of what they shine together")
     front, back = first.material or materials.Black(), second.material or materials.Black()
-    emission = values.product(values.total(first.emission, second.emission), 0.5)
-    return Closure(materials.TwoSided(front=front, back=back), emission, 1.0, first.medium or second.medium)
+    emission, is_front = first.emission, values.is_constant(second.emission, 0)
+    if not is_front:
+        translator.complain(found.node, "both sides shine alike, by half of what they shine together")
+        emission = values.product(values.total(first.emission, second.emission), 0.5)
+    made = Closure(materials.TwoSided(front=front, back=back), emission, 1.0, first.medium or second.medium)
+    made.is_one_sided = is_front
+    return made
 
 
 def _coat(translator: Translator, found: Output, ior: float, first, second):

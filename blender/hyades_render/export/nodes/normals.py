@@ -11,6 +11,10 @@ from .graph import Input, Output
 from .translator import Translator
 
 
+_FLAT, _LEANS = (0.5, 0.5, 1.0), 0.02
+"""The colour of a normal map where nothing leans, and by how much others may differ that hardly lean."""
+
+
 def normal_keys(translator: Translator, output: Output, name: str = "Normal") -> dict[str, Any]:
     """Keys `bump` and `normal_map` of a material, as far as they are said."""
     keys: dict[str, Any] = {}
@@ -49,6 +53,8 @@ def _taken(translator: Translator, found: Output, keys: dict[str, Any]) -> Input
             strength = translator.number(found.input("Strength"), 1.0)
             if not values.is_constant(strength, 1):
                 keys["normal_map"].strength = values.held(strength, 0.0, 100.0)
+        elif max(abs(part - flat) for part, flat in zip(values.color(texture), _FLAT)) > _LEANS:
+            translator.complain(node, "normals that lean the same everywhere do not in the job; it is left out")
         return None
     is_normal = node.type in ("NEW_GEOMETRY", "TEX_COORD") and found.socket.identifier == "Normal"
     if not is_normal:

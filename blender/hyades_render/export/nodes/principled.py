@@ -8,11 +8,13 @@ from typing import Any
 import numpy
 from hyades import materials, textures
 
-from . import values
+from . import graph, values
 from .bsdfs import subsurface_of
 from .closures import Closure, bright, shader
 from .graph import Output
 from .normals import normal_keys
+from .principled_inputs import tell_of_inputs
+from .principled_layers import add_coat, add_fuzz, left_of_emission
 from .translator import Translator
 from .values import Value, held
 
@@ -40,6 +42,9 @@ def principled(translator: Translator, output: Output) -> Closure:
         made.subsurface = medium_keys
     strength = bright(translator, output, translator.number(output.input("Emission Strength"), 0.0))
     emission = values.product(translator.value(output.input("Emission Color", "Emission")), strength)
+    if is_new and not values.is_constant(emission, 0):
+        emission = values.product(emission, left_of_emission(translator, output, made))
+    tell_of_inputs(translator, output, made)
     alpha = held(translator.number(output.input("Alpha"), 1.0))
     return Closure(made, values.product(emission, alpha), alpha)
 
@@ -123,18 +128,8 @@ def _since_4_0(translator: Translator, output: Output, made: materials.Principle
     tint = held(translator.value(output.input("Specular Tint"), 1.0))
     if not values.is_constant(tint, 1):
         made.specular_tint = tint
-    sheen = held(translator.number(output.input("Sheen Weight")))
-    if not values.is_constant(sheen, 0):
-        made.sheen = sheen
-        made.sheen_tint = held(translator.value(output.input("Sheen Tint"), 1.0))
-        made.sheen_roughness = held(translator.number(output.input("Sheen Roughness"), 0.5))
-    coat = held(translator.number(output.input("Coat Weight")))
-    if not values.is_constant(coat, 0):
-        made.coat = coat
-        made.coat_roughness = held(translator.number(output.input("Coat Roughness"), 0.03))
-        made.coat_ior = held(values.number(translator.constant(output.input("Coat IOR"), 1.5)), 1.0, 100.0)
-        if not values.is_constant(translator.value(output.input("Coat Tint"), 1.0), 1):
-            translator.complain(output.node, "the coat has no colour in the job; its tint is left out")
+    add_fuzz(translator, output, made)
+    add_coat(translator, output, made)
 
 
 def _anisotropy(translator: Translator, output: Output, made: materials.Principled) -> None:
@@ -145,8 +140,9 @@ def _anisotropy(translator: Translator, output: Output, made: materials.Principl
     made.anisotropic_rotation = held(translator.number(output.input("Anisotropic Rotation")))
     tangent = output.input("Tangent")
     translator.uv_map = translator.uv_map if translator.uv_map is not None else ""
-    if tangent is not None and tangent.socket.is_linked:
-        translator.complain(output.node, "tangents are those of the UV map")
+    found = graph.source(tangent) if tangent is not None else None
+    if not isinstance(found, Output) or getattr(found.node, "direction_type", "") != "UV_MAP":
+        translator.complain(output.node, "its highlights are longer along the UV map, not around an axis")
 
 
 def _subsurface(translator: Translator, output: Output, is_new: bool) -> Any:
@@ -155,7 +151,8 @@ def _subsurface(translator: Translator, output: Output, is_new: bool) -> Any:
     if share <= 0:
         return None
     if share < 1 and is_new:
-        translator.complain(output.node, f"a body scatters light below its surface or not: a weight of {share:.2f} is {round(share)}")
+        what = f"a body scatters light below its surface or not: a weight of {share:.2f} is {int(share >= 0.5)}"
+        translator.complain(output.node, what)
         if share < 0.5:
             return None
     # Up to 3.6 the weight makes the radius smaller, and leads from the base's colour to one of its own.

@@ -63,6 +63,12 @@ class PartPoints(Points):
         found = self._of_corners(self.part.surface.corner_normals())
         return found / numpy.maximum(numpy.linalg.norm(found, axis=1, keepdims=True), 1e-20)
 
+    def true_normal(self) -> Array:
+        surface = self.part.surface
+        corners = surface.positions[surface.corner_vertices[self.corner]].astype("float64")
+        found = numpy.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+        return found / numpy.maximum(numpy.linalg.norm(found, axis=1, keepdims=True), 1e-30)
+
     def generated(self) -> Array:
         return self._of_vertices(self.part.surface.generated())
 

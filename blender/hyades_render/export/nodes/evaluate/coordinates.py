@@ -51,8 +51,10 @@ def geometry(at: Evaluator, output: Output) -> Array:
     kind = output.socket.identifier
     if kind == "Position":
         return transformed(at.points.matrix(), at.points.position())
-    if kind in ("Normal", "True Normal"):
+    if kind == "Normal":
         return turned(at.points.matrix(), at.points.normal())
+    if kind == "True Normal":
+        return turned(at.points.matrix(), at.points.true_normal())
     if kind == "Backfacing":
         raise Inexpressible(output, "which side is seen is not known while it is computed")
     raise Inexpressible(output, f"'{output.socket.name}' is not supported")

@@ -30,7 +30,7 @@ def _wrap(a: Array, high: Array, low: Array) -> Array:
 
 def _ping_pong(a: Array, scale: Array) -> Array:
     s = numpy.where(scale == 0, 1, scale)
-    return numpy.where(scale == 0, 0, numpy.abs((a - s) / (s * 2) - numpy.floor((a - s) / (s * 2)) - 0.5) * 2 * s)
+    return numpy.where(scale == 0, 0, numpy.abs(((a - s) / (s * 2) - numpy.floor((a - s) / (s * 2)) - 0.5) * 2 * s))
 
 
 def _smooth_min(a: Array, b: Array, width: Array) -> Array:

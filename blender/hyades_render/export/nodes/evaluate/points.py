@@ -24,6 +24,10 @@ class Points:
         """(n, 3), shading normals in the object's own space."""
         raise Varies
 
+    def true_normal(self) -> Array:
+        """(n, 3), normals of the faces in the object's own space."""
+        raise Varies
+
     def generated(self) -> Array:
         """(n, 3), as Blender's texture space has them."""
         raise Varies

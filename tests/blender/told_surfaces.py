@@ -1,0 +1,188 @@
+"""Shaders and normals: the job says the same, or the exporter tells it by name. Run by test_export."""
+
+from unittest import mock
+
+import bpy
+import numpy
+from exporting import ExportTest
+
+from hyades_render.export.nodes import principled_inputs
+from hyades_render.export.nodes.evaluate.blackbody import color_of
+from hyades_render.export.nodes.evaluate.maths import OPERATIONS
+
+_IS_NEW = bpy.app.version >= (4, 0)
+
+
+class Surfaces(ExportTest):
+    def shaded(self, kind: str):
+        """The cube's new shader."""
+        made, node = self.material("Paint", kind)
+        bpy.data.objects["Cube"].data.materials[0] = made
+        return node
+
+    def mixed(self, *shaders: str):
+        """The cube's new shader that mixes two others, and those."""
+        first = self.shaded(shaders[0])
+        tree = first.id_data
+        mix, second = tree.nodes.new("ShaderNodeMixShader"), tree.nodes.new(shaders[1])
+        for output, end in ((first, mix.inputs[1]), (second, mix.inputs[2])):
+            tree.links.new(output.outputs[0], end)
+        tree.links.new(mix.outputs[0], tree.nodes["Material Output"].inputs["Surface"])
+        return mix, first, second
+
+    def test_facets_that_jobs_have_not_are_told(self) -> None:
+        node = self.shaded("ShaderNodeBsdfGlossy")
+        for kind, words in (("GGX", ""), ("BECKMANN", "not Beckmann's"), ("ASHIKHMIN_SHIRLEY", "not Ashikhmin and Shirley's")):
+            node.distribution, node.inputs["Roughness"].default_value = kind, 0.5
+            said = self.export()[1]
+            self.assertEqual("facets are those of GGX" in said, bool(words), kind)
+            self.assertIn(words, said)
+            node.inputs["Roughness"].default_value = 0
+            self.assertEqual(self.export()[1], "", kind)
+
+    def test_rough_matt_surfaces_that_lose_light_are_told(self) -> None:
+        node = self.shaded("ShaderNodeBsdfDiffuse")
+        for roughness in (0.2, 0.5):
+            node.inputs["Roughness"].default_value = roughness
+            job, said = self.export()
+            self.assertAlmostEqual(job.objects["Cube"].material.roughness, roughness, places=6)
+            self.assertEqual("loses no light" in said, roughness > 0.2 and bpy.app.version < (4, 3))
+
+    def test_what_facets_of_metal_lose_is_told(self) -> None:
+        node = self.shaded("ShaderNodeBsdfPrincipled")
+        for kind, metallic, roughness, told in (
+            ("GGX", 1, 0.5, True),
+            ("GGX", 0, 0.5, False),
+            ("GGX", 1, 0.4, False),
+            ("MULTI_GGX", 1, 0.5, False),
+        ):
+            node.distribution, node.inputs["Metallic"].default_value = kind, metallic
+            node.inputs["Roughness"].default_value = roughness
+            self.assertEqual("rough metal and glass are as with Multiscatter GGX" in self.export()[1], told)
+
+    def test_inputs_that_nobody_knows_are_told(self) -> None:
+        node = self.shaded("ShaderNodeBsdfPrincipled")
+        self.assertEqual(self.export()[1], "")
+        with mock.patch.object(principled_inputs, "_TAKEN", principled_inputs._TAKEN - {"Metallic"}):
+            self.assertEqual(self.export()[1], "")
+            node.inputs["Metallic"].default_value = 0.5
+            self.assertIn("the job has no 'Metallic' of it: it is left out", self.export()[1])
+        for name in ("Thin Film Thickness", "Diffuse Roughness"):  # since 4.2 and 4.3
+            if name in node.inputs:
+                node.inputs[name].default_value = 1
+                self.assertIn(f"the job has no '{name}' of it: it is left out", self.export()[1])
+                node.inputs[name].default_value = 0
+
+    def test_a_coat_with_normals_of_its_own_is_told(self) -> None:
+        node = self.shaded("ShaderNodeBsdfPrincipled")
+        bump = node.id_data.nodes.new("ShaderNodeBump")
+        coat = "Coat" if _IS_NEW else "Clearcoat"
+        node.id_data.links.new(bump.outputs[0], node.inputs[f"{coat} Normal"])
+        self.assertNotIn("its coat has the normals", self.export()[1])
+        node.inputs["Coat Weight" if _IS_NEW else coat].default_value = 1
+        self.assertIn("its coat has the normals of what is below it", self.export()[1])
+        node.id_data.links.new(bump.outputs[0], node.inputs["Normal"])
+        self.assertNotIn("its coat has the normals", self.export()[1])
+
+    def test_ways_below_a_surface_are_told(self) -> None:
+        node = self.shaded("ShaderNodeBsdfPrincipled")
+        self.scene.hyades.max_depth = 256
+        node.inputs["Subsurface Weight" if _IS_NEW else "Subsurface"].default_value = 1
+        for method, told in (("RANDOM_WALK", False), ("BURLEY", True)):
+            node.subsurface_method = method
+            self.assertEqual("Christensen and Burley's profile is left out" in self.export()[1], told)
+
+    def test_layers_take_of_what_is_below_them(self) -> None:
+        if not _IS_NEW:
+            self.skipTest("since Blender 4.0")
+        node = self.shaded("ShaderNodeBsdfPrincipled")
+        node.inputs["Emission Strength"].default_value = 2
+        node.inputs["Emission Color"].default_value = (1, 0.5, 0.25, 1)
+
+        def shines():
+            body = self.export()[0].objects["Cube"]
+            return numpy.array(body.emit.color) / [1, 0.5, 0.25]
+
+        numpy.testing.assert_allclose(shines(), 2, rtol=1e-5)
+        node.inputs["Coat Weight"].default_value = 1  # of an even sky it reflects 9 %
+        numpy.testing.assert_allclose(shines() / 2, 0.914, atol=0.002)
+        node.inputs["Coat Tint"].default_value = (1, 0.5, 1, 1)
+        numpy.testing.assert_allclose(shines() / 2, [0.914, 0.914 * 0.453, 0.914], atol=0.003)
+        job, said = self.export()
+        self.assertIn("what the tint of its coat takes does not depend on the angle of view", said)
+        color = job.objects["Cube"].material.base_color
+        self.assertAlmostEqual(color[1] / color[0], 0.453, delta=0.003)
+        node.inputs["Coat Weight"].default_value, node.inputs["Sheen Weight"].default_value = 0, 1
+        numpy.testing.assert_allclose(shines() / 2, 1 - 0.1052, atol=0.001)
+
+    def test_fuzz_is_that_of_the_job_that_is_most_like_it(self) -> None:
+        if not _IS_NEW:
+            self.skipTest("since Blender 4.0")
+        node = self.shaded("ShaderNodeBsdfPrincipled")
+        node.inputs["Sheen Weight"].default_value = 0.5
+        for roughness, weight, like, told in ((0.3, 0.1905, 0.3, False), (0.5, 0.5, 0.43, False), (1.0, 0.5, 1.0, True)):
+            node.inputs["Sheen Roughness"].default_value = roughness
+            job, said = self.export()
+            made = job.objects["Cube"].material
+            self.assertAlmostEqual(made.sheen, weight, places=4)
+            self.assertAlmostEqual(made.sheen_roughness, like, places=4)
+            self.assertIn("fuzz (sheen) is that of Estevez and Kulla", said)
+            self.assertEqual("is less rough" in said, told)
+
+    def test_what_shines_to_one_side(self) -> None:
+        mix, front, back = self.mixed("ShaderNodeEmission", "ShaderNodeBsdfDiffuse")
+        tree = mix.id_data
+        side = tree.nodes.new("ShaderNodeNewGeometry")
+        tree.links.new(side.outputs["Backfacing"], mix.inputs["Fac"])
+        job, said = self.export()
+        self.assertEqual((job.objects["Cube"].emit.two_sided, said), (False, ""))
+        for at, node in ((1, back), (2, front)):
+            tree.links.new(node.outputs[0], mix.inputs[at])
+        job, said = self.export()
+        self.assertTrue(job.objects["Cube"].emit.two_sided)
+        self.assertIn("both sides shine alike", said)
+
+    def test_normals_that_lean_far_are_told(self) -> None:
+        cube = bpy.data.objects["Cube"]
+        self.assertEqual(self.export()[1], "")
+        cube.data.polygons.foreach_set("use_smooth", [True] * 6)
+        self.assertIn("object 'Cube': its normals lean far from its faces", self.export()[1])
+        cube.modifiers.new("Round", "SUBSURF").render_levels = 1
+        self.assertEqual(self.export()[1], "")
+
+    def test_normal_maps_of_one_color_are_told(self) -> None:
+        node = self.shaded("ShaderNodeBsdfDiffuse")
+        lean = node.id_data.nodes.new("ShaderNodeNormalMap")
+        node.id_data.links.new(lean.outputs[0], node.inputs["Normal"])
+        self.assertEqual(self.export()[1], "")
+        lean.inputs["Color"].default_value = (0.7, 0.5, 0.9, 1)
+        self.assertIn("node 'Normal Map': normals that lean the same everywhere", self.export()[1])
+
+    def test_caustics_that_are_switched_off_are_told(self) -> None:
+        cycles = self.scene.cycles
+        cycles.caustics_refractive, cycles.blur_glossy = False, 2
+        said = self.export()[1]
+        self.assertIn("render: caustics are there, refractive ones too", said)
+        self.assertIn("render: Filter Glossy is left out", said)
+
+    def test_strands_without_a_radius_are_as_thick_as_those_of_cycles(self) -> None:
+        made = bpy.data.hair_curves.new("Hair") if hasattr(bpy.data, "hair_curves") else None
+        if made is None or not hasattr(made, "add_curves"):
+            self.skipTest("since Blender 3.5")
+        made.add_curves([2])
+        made.attributes["position"].data.foreach_set("vector", [0, 0, 0, 0, 0, 1])
+        self.scene.collection.objects.link(bpy.data.objects.new("Hair", made))
+        self.assertAlmostEqual(float(self.export()[0].objects["Hair"].curves.widths[0][0]), 0.01, places=6)
+
+
+class Values(ExportTest):
+    def test_black_bodies_are_those_of_cycles(self) -> None:
+        numpy.testing.assert_array_equal(color_of([500.0, 20000.0]), color_of([800.0, 12000.0]))
+        numpy.testing.assert_allclose(color_of(1500.0), [3.2643, 0.434, 0], atol=1e-4)  # red as of Cycles' pictures
+        for kelvin in (965.0, 1167.0, 1449.0, 1902.0, 3315.0, 6365.0):  # the pieces meet
+            numpy.testing.assert_allclose(color_of(kelvin - 0.01), color_of(kelvin), atol=2e-3)
+
+    def test_ping_pong_with_a_scale_below_nothing(self) -> None:
+        for value in (-0.9, 0.2, 0.7):
+            way, back = (OPERATIONS["PINGPONG"](numpy.array(value), numpy.array(scale), None) for scale in (0.5, -0.5))
+            self.assertAlmostEqual(float(way), float(back))

@@ -1,0 +1,109 @@
+"""Volumes as the exporter has them: files of OpenVDB, and shaders. Run by test_export."""
+
+import bpy
+import numpy
+import vdb_file
+from exporting import ExportTest
+
+from hyades_render import animation
+
+_FULL = numpy.ones((8, 8, 8))
+_RED = _FULL[..., None] * [0.75, 0.25, 0.25]
+
+
+class Volumes(ExportTest):
+    def smoke(self, shader: str = "ShaderNodeVolumePrincipled", **grids: numpy.ndarray):
+        """An object of type Volume, and the shader that it is made of."""
+        self.path = vdb_file.write(self.folder / "smoke_0001.vdb", grids or {"density": _FULL})
+        data = bpy.data.volumes.new("Smoke")
+        data.filepath = str(self.path)
+        body = bpy.data.objects.new("Smoke", data)
+        self.scene.collection.objects.link(body)
+        made = bpy.data.materials.new("Fog")
+        made.use_nodes = True
+        node = made.node_tree.nodes.new(shader)
+        made.node_tree.links.new(node.outputs[0], made.node_tree.nodes["Material Output"].inputs["Volume"])
+        data.materials.append(made)
+        return body, node
+
+    def test_densities_are_those_of_the_objects_own_space(self) -> None:
+        body, node = self.smoke()
+        node.inputs["Density"].default_value = 3
+        for scale, space, expected in (((1, 1, 1), "OBJECT", 1.5), ((2, 2, 2), "OBJECT", 0.75), ((2, 2, 2), "WORLD", 1.5)):
+            body.scale, body.data.render.space = scale, space
+            job, said = self.export()
+            self.assertEqual(said, "")
+            numpy.testing.assert_allclose(job.objects["Smoke"].interior.scattering, [expected] * 3, rtol=1e-5)
+
+    def test_grids_that_are_not_there_are_told(self) -> None:
+        _, node = self.smoke(smoke=_FULL, Cd=_RED)
+        job, said = self.export()
+        self.assertNotIn("Smoke", job.objects)
+        words = "object 'Smoke': its file has no grid 'density' of numbers, expected one of 'smoke': it is left out"
+        self.assertEqual(said, words)
+        node.inputs["Density Attribute"].default_value = "smoke"
+        node.inputs["Color Attribute"].default_value = "Cd"
+        job, said = self.export()
+        density = job.objects["Smoke"].interior.density
+        self.assertEqual((density.grid, density.tint, said), ("smoke", "Cd", ""))
+        self.assertEqual(density.at, [0.125] * 3)  # by half a voxel: Cycles has values in the middle of those
+        node.inputs["Color Attribute"].default_value = "smoke"
+        job, said = self.export()
+        self.assertIsNone(job.objects["Smoke"].interior.density.tint)
+        self.assertIn("no grid 'smoke' of colours, expected one of 'Cd': its colour is left out", said)
+        node.inputs["Density Attribute"].default_value = ""
+        self.assertIn("it asks for no grid of the file", self.export()[1])
+
+    def test_black_bodies_are_as_bright_in_files_as_elsewhere(self) -> None:
+        body, node = self.smoke(density=_FULL, temperature=_FULL)
+        node.inputs["Blackbody Intensity"].default_value = 0.5
+        node.inputs["Temperature"].default_value = 1500
+        node.inputs["Blackbody Tint"].default_value = (1, 0.5, 0.25, 1)
+        job, said = self.export()
+        glow = job.objects["Smoke"].interior.emission
+        self.assertEqual((glow.temperature, glow.kelvin, glow.color, said), ("temperature", 1500, [1, 0.5, 0.25], ""))
+        cube = bpy.data.objects["Cube"]
+        cube.data.materials[0] = body.data.materials[0]
+        even = self.export()[0].objects["Cube"].interior.emission
+        luminance = even[0] * 0.2126 + even[1] / 0.5 * 0.7152 + even[2] / 0.25 * 0.0722
+        self.assertAlmostEqual(glow.strength / luminance, 1, places=2)
+
+    def test_a_sequence_is_read_without_being_looked_at_before(self) -> None:
+        body, _ = self.smoke()
+        body.data.is_sequence = True
+        body.data.frame_duration = 5
+        body.data.grids.unload()
+        job, said = self.export()
+        self.assertEqual((str(job.objects["Smoke"].interior.density.vdb), said), (str(self.path), ""))
+
+    def test_a_file_for_each_frame_is_told(self) -> None:
+        """Jobs have one file for all frames."""
+        body, _ = self.smoke()
+        vdb_file.write(self.path.with_name("smoke_0002.vdb"), {"density": 2 * _FULL})
+        body.data.is_sequence, body.data.frame_duration = True, 2
+        exported = animation.job_of(self.scene, frames=range(1, 3), name="film")
+        self.assertEqual(str(exported.job.objects["Smoke"].interior.density.vdb), str(self.path))
+        words = "object 'Smoke' > interior > density > vdb: changes over time in a way that a job cannot say"
+        self.assertIn(words, "\n".join(map(str, exported.complaints)))
+
+    def test_phase_functions_are_the_jobs_or_told(self) -> None:
+        made = bpy.data.materials.new("Haze")
+        made.use_nodes = True
+        node = made.node_tree.nodes.new("ShaderNodeVolumeScatter")
+        if not hasattr(node, "phase"):
+            self.skipTest("since Blender 4.3")
+        made.node_tree.links.new(node.outputs[0], made.node_tree.nodes["Material Output"].inputs["Volume"])
+        bpy.data.objects["Cube"].data.materials[0] = made
+        node.inputs["Anisotropy"].default_value = 0.5
+        for kind, phase, g in (
+            ("HENYEY_GREENSTEIN", None, 0.5),
+            ("RAYLEIGH", "rayleigh", None),
+            ("DRAINE", None, 0.54),
+            ("MIE", None, 0.879),
+            ("FOURNIER_FORAND", None, 0.658),
+        ):
+            node.phase = kind
+            job, said = self.export()
+            medium = job.objects["Cube"].interior
+            self.assertEqual((medium.__dict__.get("phase"), g and round(medium.g, 3)), (phase, g), kind)
+            self.assertEqual("jobs have no phase function" in said, kind not in ("HENYEY_GREENSTEIN", "RAYLEIGH"))
