@@ -88,7 +88,9 @@ std::string Diagnosis::unmet_needs(const JobNeeds& job) const {
     return fmt::format("it asks for workers with {} of memory; the most that one has is {}",
                        core::format_bytes(job.memory), core::format_bytes(most_memory));
   }
-  return "no worker has both all its tags and the memory that it asks for";
+  return job.render_class == core::RenderClass::portable
+             ? "no worker has all its tags, the memory that it asks for and a portable class"
+             : "no worker has both all its tags and the memory that it asks for";
 }
 
 /// Workers that are there and get nothing, and why; the first few.

@@ -60,7 +60,8 @@ void Results::on(const ResultArrived& e) {
     answer_again(*job, *slot, *extent, *held, worker->witness, e);
   } else if (ledger.any_held(*extent)) {
     reject(e, RejectReason::overlap);
-  } else if (slot->worker_class != ClassId{} && slot->worker_class != worker->class_for(*job)) {
+  } else if (const ClassId own = worker->class_for(*job);
+             own == ClassId{} || (slot->worker_class != ClassId{} && slot->worker_class != own)) {
     reject(e, RejectReason::unknown);
   } else if (!slot->film && !films_.has_place(*job)) {
     // It is late: its lease has ended, and the frame's film was set aside.

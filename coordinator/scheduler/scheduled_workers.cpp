@@ -52,7 +52,7 @@ int claim_of(const FrameSlot& slot, Origin origin, ClassId worker_class, TimePoi
 }  // namespace
 
 ClassId class_id(core::RenderClass of, const std::string& name) {
-  return ClassId{number_of(of == core::RenderClass::portable ? "portable " + name : name)};
+  return ClassId{number_of(core::kRenderClassNames[static_cast<size_t>(of)] + " " + name)};
 }
 
 std::vector<TagId> tag_ids(const std::vector<std::string>& tags) {
@@ -215,9 +215,11 @@ bool ScheduledWorkers::anybody_with_better_claim(const ScheduledJob& job, const 
 
 bool ScheduledWorkers::may_render(const ScheduledJob& job, const FrameSlot& slot,
                                   const Worker& worker) const {
-  if (slot.worker_class != ClassId{}) return slot.worker_class == worker.class_for(job);
+  const ClassId own = worker.class_for(job);
+  if (own == ClassId{}) return false;
+  if (slot.worker_class != ClassId{}) return slot.worker_class == own;
   if (!slot.left.empty() && anybody_with_better_claim(job, slot, worker)) return false;
-  return !is_slow(worker) || !anybody_of_another(job, worker.class_for(job));
+  return !is_slow(worker) || !anybody_of_another(job, own);
 }
 
 bool ScheduledWorkers::anybody_for(const ScheduledJob& job, ClassId worker_class) const {

@@ -101,6 +101,47 @@ TEST_F(PortableClass, NamesOfTheKindsAreApart) {
   EXPECT_TRUE(gets_a_unit(kOld));
 }
 
+TEST_F(PortableClass, NamesThatLookLikeOnesOfTheOtherKindAreApart) {
+  join(kAnna, "portable everywhere", "x");
+  join(kBert, "native", "everywhere");
+  join(kOld, "x", "native everywhere");
+  for (const WorkerId worker : {kAnna, kBert, kOld}) bench.tell(WorkerLost{worker});
+  join(kBert, "native", "everywhere");
+  add(core::RenderClass::portable);
+  bench.deliver(bench.ask(kBert));
+  const auto record = std::get<UnitRecord>(bench.only<Persist>().record);
+  EXPECT_EQ(record.accepted.worker_class, "everywhere");
+}
+
+// Who comes back under another program may know no portable class any more.
+TEST_F(PortableClass, FilmsOfWhoHasNoneAreRefused) {
+  join(kAnna, "amd", "everywhere");
+  add(core::RenderClass::portable);
+  const Lease lease = bench.ask(kAnna);
+  bench.tell(WorkerLost{kAnna});
+  WorkerJoined again{kAnna, 1, "amd", {{lease.lease, kJob, lease.units[0]}}};
+  again.credential = "1";
+  bench.tell(again);
+  EXPECT_TRUE(bench.all<Lease>().empty()) << "it may keep a unit of a class that it has not";
+  bench.deliver(lease);
+  EXPECT_TRUE(bench.all<Persist>().empty());
+  EXPECT_EQ(bench.only<Reject>().reason, RejectReason::unknown);
+}
+
+TEST_F(PortableClass, NorDoesAFrameThatNobodyHasBegunTakeThem) {
+  join(kAnna, "amd", "everywhere");
+  add(core::RenderClass::portable);
+  const Lease lease = bench.ask(kAnna);
+  SchedulerBench restarted(options());
+  JobPlan plan = small_plan({1}, 64);
+  plan.needs.render_class = core::RenderClass::portable;
+  restarted.tell(WorkerJoined{kAnna, 1, "amd", {}});
+  restarted.add(plan);
+  restarted.tell(FrameOpened{kJob, 1});
+  restarted.deliver(lease);
+  EXPECT_TRUE(restarted.all<Persist>().empty());
+}
+
 // Two classes of one worker are no two classes at work.
 TEST_F(PortableClass, WhoIsAloneIsWaitedForInBoth) {
   join(kAnna, "amd", "everywhere");
