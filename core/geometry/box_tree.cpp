@@ -1,5 +1,6 @@
 #include "core/geometry/box_tree.h"
 
+#include <new>
 #include <numeric>
 #include <optional>
 #include <utility>
@@ -231,10 +232,11 @@ void BoxTree::build(const std::vector<Bounds>& boxes) {
   if (boxes.empty()) return;
   std::vector<Task> tasks;
   NodeMaker(splitter, nodes_, &tasks).make(all, 0);
-  (void)parallel_for(tasks.size(), tasks.size() > 1 ? 0 : 1, [&](size_t i) {
+  const Status made = parallel_for(tasks.size(), tasks.size() > 1 ? 0 : 1, [&](size_t i) {
     Task& task = tasks[i];
     NodeMaker(splitter, task.made, nullptr).make(task.range, task.level);
   });
+  if (!made) throw std::bad_alloc();  // nothing else is thrown there
   size_t total = nodes_.size();
   for (const Task& task : tasks) total += task.made.size();
   nodes_.reserve(total);

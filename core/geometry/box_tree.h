@@ -27,20 +27,24 @@ struct SlabRay {
 
   SlabRay(const Vec3d& origin, const Vec3d& direction) {
     for (int i = 0; i < 3; ++i) {
+      constexpr float kMost = std::numeric_limits<float>::infinity();
       const auto o = static_cast<float>(origin[i]);
       auto d = static_cast<float>(direction[i]);
-      if (std::abs(d) < kSmallest) d = std::copysign(kSmallest, d);
-      const float pad = std::abs(o) * kPad + kLeastPad;
+      const bool along = std::abs(d) < kSmallest;
+      if (along) d = std::copysign(kSmallest, d);
+      // Both sides of the origin, from the nearest floats; in the world it is a float itself.
+      const bool exact = static_cast<double>(o) == origin[i] && !along;
+      const float below = (exact ? o : std::nextafter(o, -kMost)) - kLeastPad;
+      const float above = (exact ? o : std::nextafter(o, kMost)) + kLeastPad;
       const auto axis = static_cast<size_t>(i);
       inverse[axis] = 1.0F / d;
       near_side[axis] = d < 0.0F ? 1 : 0;
-      near_origin[axis] = d < 0.0F ? o - pad : o + pad;
-      far_origin[axis] = d < 0.0F ? o + pad : o - pad;
+      near_origin[axis] = d < 0.0F ? below : above;
+      far_origin[axis] = d < 0.0F ? above : below;
     }
   }
 
   static constexpr float kSmallest = 1e-37F;
-  static constexpr float kPad = 0x1p-21F;
   static constexpr float kLeastPad = 1e-24F;
   static constexpr float kGrow = 1.0F + 0x1p-20F;
 };

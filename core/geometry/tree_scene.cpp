@@ -144,6 +144,13 @@ class TreeWalk {
 
   bool meet(const TreeScene& scene, const TreeScene::Geometry& geometry, uint32_t primitive,
             const SpaceRay& local, const Place& place) {
+    if (geometry.kind == TreeScene::Kind::mesh) {
+      // Boxes of moving triangles take longer than the triangles.
+      const std::optional<double> t =
+          meet_corners(moving_corners(*geometry.mesh, primitive), local);
+      return t && take(geometry, primitive, *t, place,
+                       enter_box(local.slabs, scene.bounds_at(geometry, primitive, time_), t_min_));
+    }
     const float enters =
         enter_box(local.slabs, scene.bounds_at(geometry, primitive, time_), t_min_);
     if (enters > limit_) return false;
@@ -173,11 +180,8 @@ class TreeWalk {
         inside.copy_number = primitive;
         return walk(*geometry.scene, local.in(pose.to_copy), inside);
       }
-      case TreeScene::Kind::mesh: {
-        const std::optional<double> t =
-            meet_corners(moving_corners(*geometry.mesh, primitive), local);
-        return t && take(geometry, primitive, *t, place, enters);
-      }
+      case TreeScene::Kind::mesh:
+        break;
     }
     return false;
   }

@@ -21,6 +21,10 @@
 namespace hyades::core {
 namespace {
 
+#ifdef __FAST_MATH__
+#error "Hyades is compiled without -ffast-math: its pictures are the same on every machine"
+#endif
+
 constexpr uint32_t kSweep = 4096;
 constexpr uint32_t kMantissas = 1U << 16U;
 
