@@ -100,6 +100,7 @@ struct PrincipledDesc {
   ColorInput sheen_tint{Animated<Rgb>(Rgb(1.0F)), {}};
   ScalarInput sheen_roughness{Animated<float>(0.5F), {}};
   bool thin_walled = false;
+  bool multiple_scattering = true;  ///< of metal and glass: give back what facets shadow
   ScalarInput diffuse_transmission{Animated<float>(0.0F), {}};
   ColorInput emission_color{Animated<Rgb>(Rgb(1.0F)), {}};
   Animated<float> emission_strength{0.0F};
@@ -128,6 +129,7 @@ struct PrincipledDesc {
     visit.scalar_input("diffuse_transmission", self.diffuse_transmission, kUnitInterval);
     visit.color_input("emission_color", self.emission_color, kNotNegative);
     visit.animated("emission_strength", self.emission_strength, kNotNegative.in("W/(m² sr)"));
+    visit.flag("multiple_scattering", self.multiple_scattering);
   }
 
   /// Whether it may shine.

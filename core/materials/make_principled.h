@@ -27,6 +27,7 @@ struct PrincipledParams {
   float ior = 1.5F;
   float coat_ior = 1.5F;
   bool thin_walled = false;
+  FacetScattering facets = FacetScattering::multiple;  ///< of metal and glass
   bool subsurface = false;  ///< light that would be reflected by the matt part goes into the body
 };
 

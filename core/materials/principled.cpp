@@ -49,6 +49,7 @@ class Principled final : public Material {
     parts.metal_edge = parts.facet_tint;
     parts.matt = base;
     parts.solid = leads_inside_;
+    parts.metal_keeps_light = params_.facets == FacetScattering::multiple;
     if (params_.thin_walled) {
       const float through = fraction_at(params_.diffuse_transmission, point);
       parts.matt = base * (1.0F - through);
@@ -110,8 +111,7 @@ class Principled final : public Material {
     if (params_.thin_walled)
       return thin_dielectric_bsdf(eta, parts.alpha, base, parts.facet_tint, arena);
     const Rgb tint = params_.subsurface ? Rgb(1.0F) : square_root(base);
-    return dielectric_bsdf(eta, parts.alpha, tint, parts.facet_tint, FacetScattering::multiple,
-                           arena);
+    return dielectric_bsdf(eta, parts.alpha, tint, parts.facet_tint, params_.facets, arena);
   }
 
   PrincipledParams params_;

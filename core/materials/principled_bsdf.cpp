@@ -38,7 +38,7 @@ PrincipledBsdf::PrincipledBsdf(const PrincipledParts& parts)
     const float steep = fifth_power(fall);
     const Rgb there = parts_.metal + (Rgb(1.0F) - parts_.metal) * steep;
     metal_bend_ = there * (Rgb(1.0F) - parts_.metal_edge) / (kEdgeCosine * steep * fall);
-    if (!mirrors()) {
+    if (!mirrors() && parts_.metal_keeps_light) {
       const float loss = white_.mean_loss();
       const Rgb f = mean_metal_reflectance();
       lost_tint_ = f * f * (1.0F - loss) / (Rgb(1.0F) - f * loss);
@@ -65,7 +65,10 @@ Spread PrincipledBsdf::spread_beneath() const {
   all.wide_through = parts_.matt_through * (plain_ * rest);
   if (mirrors()) return all;
   all.lobe = parts_.facet_tint * (plain_ * (1.0F - rest));
-  if (parts_.metallic > 0.0F) all.lobe += parts_.metallic * mean_metal_reflectance();
+  if (parts_.metallic > 0.0F) {
+    const float kept = parts_.metal_keeps_light ? 1.0F : 1.0F - white_.mean_loss();
+    all.lobe += parts_.metallic * kept * mean_metal_reflectance();
+  }
   if (parts_.glass != nullptr)
     all.add(parts_.glass->spread(1.0F), Rgb((1.0F - parts_.metallic) * parts_.glassy));
   return all;

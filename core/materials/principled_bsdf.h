@@ -25,15 +25,16 @@ namespace hyades::core {
 /// part, what metal and glass lose is a part of its own.
 struct PrincipledParts {
   float metallic = 0.0F;
-  float glassy = 0.0F;     ///< share of what is no metal
-  AnisotropicGgx facets;   ///< of the metal and over the matt part
-  float alpha = 0.25F;     ///< roughness^2
-  float eta = 1.5F;        ///< relative index of the facets over the matt part
-  Rgb facet_tint{1.0F};    ///< of these facets
-  Rgb metal{1.0F};         ///< reflectance of the metal seen straight on
-  Rgb metal_edge{1.0F};    ///< tint of what it reflects at 82 degrees
-  Rgb matt{0.8F};          ///< reflectance of the matt part
-  Rgb matt_through{0.0F};  ///< its transmittance (of thin walls)
+  float glassy = 0.0F;            ///< share of what is no metal
+  AnisotropicGgx facets;          ///< of the metal and over the matt part
+  float alpha = 0.25F;            ///< roughness^2
+  float eta = 1.5F;               ///< relative index of the facets over the matt part
+  Rgb facet_tint{1.0F};           ///< of these facets
+  Rgb metal{1.0F};                ///< reflectance of the metal seen straight on
+  Rgb metal_edge{1.0F};           ///< tint of what it reflects at 82 degrees
+  bool metal_keeps_light = true;  ///< what its facets throw onto each other
+  Rgb matt{0.8F};                 ///< reflectance of the matt part
+  Rgb matt_through{0.0F};         ///< its transmittance (of thin walls)
   const Bsdf* glass = nullptr;
   bool solid = false;  ///< a body: coat and fuzz lie on the outer side only
   std::optional<CoatLobe> coat;
@@ -101,7 +102,7 @@ class PrincipledBsdf final : public Bsdf {
   float matt_scale_ = 0.0F;  ///< 1 / (pi mean T)
   float bare_scale_ = 0.0F;  ///< the same where no layer is (matt_scale_ unless solid)
   Rgb lost_tint_{0.0F};      ///< of light that the metal's facets throw onto each other
-  float lost_scale_ = 0.0F;  ///< 1 / (pi mean loss)
+  float lost_scale_ = 0.0F;  ///< 1 / (pi mean loss); 0 where it stays lost
   std::optional<LayerLoss> layer_loss_;
   std::optional<LayerLight> layer_light_;
 };

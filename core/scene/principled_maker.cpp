@@ -41,6 +41,7 @@ Result<MaterialPtr> principled_material(const PrincipledDesc& p, Appearance& loo
   params.ior = p.ior.at(looks.time());
   params.coat_ior = p.coat_ior.at(looks.time());
   params.thin_walled = p.thin_walled;
+  if (!p.multiple_scattering) params.facets = FacetScattering::single;
   params.subsurface = p.subsurface.has_value();
   return make_principled(params);
 }

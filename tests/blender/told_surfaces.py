@@ -48,17 +48,11 @@ class Surfaces(ExportTest):
             self.assertAlmostEqual(job.objects["Cube"].material.roughness, roughness, places=6)
             self.assertEqual("loses no light" in said, roughness > 0.2 and bpy.app.version < (4, 3))
 
-    def test_what_facets_of_metal_lose_is_told(self) -> None:
+    def test_metal_loses_what_it_loses_in_blender(self) -> None:
         node = self.shaded("ShaderNodeBsdfPrincipled")
-        for kind, metallic, roughness, told in (
-            ("GGX", 1, 0.5, True),
-            ("GGX", 0, 0.5, False),
-            ("GGX", 1, 0.4, False),
-            ("MULTI_GGX", 1, 0.5, False),
-        ):
+        for kind, metallic, keeps in (("GGX", 1, False), ("GGX", 0, True), ("MULTI_GGX", 1, True)):
             node.distribution, node.inputs["Metallic"].default_value = kind, metallic
-            node.inputs["Roughness"].default_value = roughness
-            self.assertEqual("rough metal and glass are as with Multiscatter GGX" in self.export()[1], told)
+            self.assertEqual(self.export()[0].objects["Cube"].material.multiple_scattering, keeps)
 
     def test_inputs_that_nobody_knows_are_told(self) -> None:
         node = self.shaded("ShaderNodeBsdfPrincipled")

@@ -135,6 +135,9 @@ class Principled(Material):
     """Makes objects of this material lamps, as `emit` does, which comes first where an object has
     it; thin walls shine on both sides. Not for parts of other materials. Unit: W/(m² sr). Range: >=
     0."""
+    multiple_scattering: bool = key("switch", True)
+    """Gives back the light that facets of metal and glass throw onto each other; without it these
+    darken where they are rough."""
     opacity: NumberInput = key("number or texture", 1, low=0, high=1)
     """How much of it is there: leaves from an image of a leaf, fading smoke. The rest of the light
     passes straight on, to the camera and in shadows, as if nothing were there, and counts no event.

@@ -70,6 +70,15 @@ inline std::vector<BsdfCase> principled_cases() {
          p.anisotropic_rotation.value = 0.15F;
          p.specular_tint.value = {0.9F, 0.5F, 0.7F};
        })},
+      {"principled_loses_light", principled_with([](P& p) {
+         p.metallic.value = 0.5F;
+         p.transmission.value = 1.0F;
+         p.roughness.value = 0.8F;
+         p.coat.value = 0.5F;
+         p.coat_roughness.value = 0.4F;
+         p.facets = FacetScattering::single;
+       }),
+       1.5F},
       {"principled_rough_along", principled_with([](P& p) {
          p.metallic.value = 0.5F;
          p.roughness.value = 0.4F;

@@ -121,6 +121,34 @@ TEST(BsdfFurnace, LayersOverWhiteSurfacesLoseNothing) {
   }
 }
 
+TEST(BsdfFurnace, WithoutMultipleScatteringPrincipledIsAsItsPartsAre) {
+  for (const float roughness : {0.3F, 0.7F, 1.0F}) {
+    const auto principled = [&](float metallic) {
+      return white([&](P& p) {
+        p.roughness.value = roughness;
+        p.metallic.value = metallic;
+        p.transmission.value = 1.0F - metallic;
+        p.facets = FacetScattering::single;
+      });
+    };
+    const MaterialPtr metal_alone =
+        make_conductor(Rgb(0.1F), Rgb(1e4F), number(roughness), Rgb(1.0F), FacetScattering::single);
+    const MaterialPtr glass_alone = make_rough_dielectric(
+        1.5F, Rgb(1.0F), Rgb(1.0F), number(roughness), FacetScattering::single);
+    for (const bool is_metal : {true, false}) {
+      const BsdfUnderTest a(principled(is_metal ? 1.0F : 0.0F));
+      const BsdfUnderTest b(is_metal ? metal_alone : glass_alone);
+      for (const float z : {0.9F, 0.5F, 0.2F}) {
+        const Vec3 wo(std::sqrt(1.0F - z * z), 0.0F, z);
+        const double back = test::furnace(*a.get(), wo, 6000);
+        EXPECT_NEAR(back, test::furnace(*b.get(), wo, 6000), 0.003)
+            << roughness << (is_metal ? " metal" : " glass") << " at " << z;
+        EXPECT_LT(back, roughness == 1.0F ? 0.9 : 1.0) << "nothing is lost";
+      }
+    }
+  }
+}
+
 TEST(BsdfFurnace, PrincipledLayersLoseNothing) {
   for (const float beneath : {0.0F, 0.5F, 1.0F}) {
     for (const float metallic : {0.0F, 0.5F, 1.0F}) {

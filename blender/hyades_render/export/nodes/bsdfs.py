@@ -33,7 +33,8 @@ def _roughness(translator: Translator, output: Output) -> Any:
     return roughness
 
 
-def _keeps_light(output: Output) -> bool:
+def keeps_light(output: Output) -> bool:
+    """Whether facets give back what they throw onto each other."""
     return getattr(output.node, "distribution", "") == "MULTI_GGX"
 
 
@@ -65,7 +66,7 @@ def glossy(translator: Translator, output: Output) -> Closure:
         return Closure(materials.Mirror(color=color, **normals))
     # Both have alpha = roughness² of GGX, without Fresnel's factor.
     made = materials.Glossy(color=color, reflectiveness=1, glossiness=values.rest(roughness), **normals)
-    made.multiple_scattering = _keeps_light(output)
+    made.multiple_scattering = keeps_light(output)
     return Closure(made)
 
 
@@ -76,7 +77,7 @@ def dielectric(translator: Translator, output: Output, reflection: Any) -> mater
         ior=held(translator.constant(output.input("IOR"), 1.45), 0.01, 100.0),
         transmission=color,
         reflection=color if reflection is None else reflection,
-        multiple_scattering=_keeps_light(output),
+        multiple_scattering=keeps_light(output),
         **normal_keys(translator, output),
     )
     roughness = _roughness(translator, output)

@@ -9,7 +9,7 @@ import numpy
 from hyades import materials, textures
 
 from . import graph, values
-from .bsdfs import subsurface_of
+from .bsdfs import keeps_light, subsurface_of
 from .closures import Closure, bright, shader
 from .graph import Output
 from .normals import normal_keys
@@ -44,6 +44,8 @@ def principled(translator: Translator, output: Output) -> Closure:
     emission = values.product(translator.value(output.input("Emission Color", "Emission")), strength)
     if is_new and not values.is_constant(emission, 0):
         emission = values.product(emission, left_of_emission(translator, output, made))
+    if not keeps_light(output) and not (values.is_constant(made.metallic, 0) and values.is_constant(made.transmission, 0)):
+        made.multiple_scattering = False
     tell_of_inputs(translator, output, made)
     alpha = held(translator.number(output.input("Alpha"), 1.0))
     return Closure(made, values.product(emission, alpha), alpha)

@@ -23,8 +23,6 @@ _NOTHING_ALONE = {
     "Thin Film IOR",  # without a thickness
     "Weight",
 }
-_GGX_IS_LIKE_ALL = 0.4001
-"""Roughness up to which facets lose about 1 % of light."""
 _METHODS = {"BURLEY": "Christensen and Burley's profile", "RANDOM_WALK_SKIN": "the entry of skin"}
 
 
@@ -36,24 +34,14 @@ def tell_of_inputs(translator: Translator, output: Output, made: materials.Princ
         found = graph.source(graph.Input(socket, output.groups))
         if isinstance(found, Output) or _says(getattr(found.socket, "default_value", 0.0)):
             translator.complain(output.node, f"the job has no '{socket.name}' of it: it is left out")
-    _tell_of_facets(translator, output, made)
+    if not values.is_constant(made.transmission, 0) and not values.is_constant(made.specular_tint, 1):
+        translator.complain(output.node, "what glass reflects is tinted in another way")
     _tell_of_coat(translator, output, made)
 
 
 def _says(value: Any) -> bool:
     """Whether what an input has by itself is more than nothing."""
     return bool(value) if isinstance(value, (int, float, str)) or value is None else any(list(value)[:3])
-
-
-def _tell_of_facets(translator: Translator, output: Output, made: materials.Principled) -> None:
-    metallic, through, roughness = made.metallic, made.transmission, made.roughness
-    shiny = not (values.is_constant(metallic, 0) and values.is_constant(through, 0))
-    rough = values.is_texture(roughness) or values.number(roughness) > _GGX_IS_LIKE_ALL
-    if getattr(output.node, "distribution", "") == "GGX" and shiny and rough:
-        what = "rough metal and glass are as with Multiscatter GGX: brighter than with GGX, which loses light (2 % of a picture"
-        translator.complain(output.node, f"{what} of a ball at roughness 0.5, 12 % at 1)")
-    if not values.is_constant(through, 0) and not values.is_constant(made.specular_tint, 1):
-        translator.complain(output.node, "what glass reflects is tinted in another way")
 
 
 def _tell_of_coat(translator: Translator, output: Output, made: materials.Principled) -> None:
