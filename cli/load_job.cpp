@@ -39,11 +39,7 @@ std::optional<LoadedJob> read_job_file(const std::string& path, Diagnostics& dia
   }
   loaded.assets = std::make_unique<core::RecordingResolver>(door);
   loaded.job = core::parse_job({text->chars(), text->size()}, path, *loaded.assets, diagnostics);
-  if (!scene.render_class.empty()) {
-    loaded.job.render.render_class = scene.render_class == core::kRenderClassNames[1]
-                                         ? core::RenderClass::portable
-                                         : core::RenderClass::native;
-  }
+  if (scene.render_class) loaded.job.render.render_class = *scene.render_class;
   print_notes(loaded.files->notes());
   return loaded;
 }

@@ -1,12 +1,12 @@
 #include "cli/scene_options.h"
 
+#include <algorithm>
 #include <cstdio>
 #include <vector>
 
 #include <CLI/CLI.hpp>
 
 #include "core/base/printable.h"
-#include "core/base/render_class.h"
 #include "core/job/scene_document.h"
 #include "core/job/script_include.h"
 
@@ -68,10 +68,16 @@ void declare_scene_options(CLI::App& app, SceneOptions& options) {
 }
 
 void declare_class_option(CLI::App& app, SceneOptions& options) {
-  app.add_option("--class", options.render_class,
-                 "native or portable, instead of the job's render.class: portable gives the same "
-                 "pixels on every processor")
-      ->check(CLI::IsMember(core::kRenderClassNames))
+  const auto& names = core::kRenderClassNames;
+  app.add_option_function<std::string>(
+         "--class",
+         [&](const std::string& name) {
+           const auto at = std::find(names.begin(), names.end(), name) - names.begin();
+           options.render_class = static_cast<core::RenderClass>(at);
+         },
+         "native or portable, instead of the job's render.class: portable gives the same pixels on "
+         "every processor")
+      ->check(CLI::IsMember(names))
       ->type_name("CLASS");
 }
 

@@ -1,8 +1,10 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "core/base/render_class.h"
 #include "import/job_files.h"
 
 namespace CLI {
@@ -19,8 +21,8 @@ struct SceneOptions {
   bool missing_textures = false;  ///< pictures that are not there are magenta, not errors
   bool follow_links = false;      ///< out of scenes' folders too
   std::vector<std::string> set;   ///< of a script: "name=value"
-  std::string render_class;  ///< instead of the job's; empty: that. Where declare_class_option()
-  std::string frames;        ///< of a .blend: those that are wanted; empty: all. No option here
+  std::optional<core::RenderClass> render_class;  ///< instead of the job's: declare_class_option()
+  std::string frames;  ///< of a .blend: those that are wanted; empty: all. No option here
 };
 
 /// What commands take as their job, for their help.

@@ -92,7 +92,8 @@ class BoxTree {
   /// Construction of SAH-based Bounding Volume Hierarchies"). The same tree whatever the threads.
   void build(const std::vector<Bounds>& boxes);
 
-  /// The same over boxes that move.
+  /// Over boxes that move while the shutter is open: of the form that they suit half way, with
+  /// nodes whose boxes move too.
   void build(const std::vector<MovingBounds>& boxes);
 
   /// The numbers of all boxes, those of a leaf side by side.

@@ -130,11 +130,15 @@ EmbreeScene::~EmbreeScene() {
 }
 
 std::optional<SceneHit> EmbreeScene::nearest(const Ray& ray, RayKind kind, float t_min) const {
+  return meet_nearest(scene_, to_embree(ray, kind, t_min));
+}
+
+std::optional<SceneHit> meet_nearest(RTCScene scene, const RTCRay& ray) {
   RTCRayHit query;
-  query.ray = to_embree(ray, kind, t_min);
+  query.ray = ray;
   query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
   query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
-  trace_nearest(scene_, query);
+  trace_nearest(scene, query);
   const RTCHit& met = query.hit;
   if (met.geomID == RTC_INVALID_GEOMETRY_ID) return std::nullopt;
   SceneHit hit;

@@ -46,6 +46,9 @@ inline void trace_any(RTCScene scene, RTCRay& ray) {
 }
 #endif
 
+/// What `ray` meets first in the scene; of copies what new_copies_geometry() says.
+std::optional<SceneHit> meet_nearest(RTCScene scene, const RTCRay& ray);
+
 /// The device, made at the first call and never released. Embree is pinned to AVX2, or, on a
 /// processor without it, to SSE 4.2 (other bits: another class of worker). The error says what
 /// Embree lacks.

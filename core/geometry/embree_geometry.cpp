@@ -13,12 +13,15 @@
 namespace hyades::core {
 namespace {
 
+RTCBounds to_embree(const Bounds& b) {
+  return {b.lower.x, b.lower.y, b.lower.z, 0.0F, b.upper.x, b.upper.y, b.upper.z, 0.0F};
+}
+
 void quadric_bounds_callback(const RTCBoundsFunctionArguments* args) {
   const auto& object = *static_cast<const PlacedObject*>(args->geometryUserPtr);
   const Bounds b =
       quadric_bounds(object.motion().steps()[args->timeStep], object.placement().shape);
-  RTCBounds& out = *args->bounds_o;
-  out = {b.lower.x, b.lower.y, b.lower.z, 0.0F, b.upper.x, b.upper.y, b.upper.z, 0.0F};
+  *args->bounds_o = to_embree(b);
 }
 
 RTCGeometryType curve_type(CurveBasis basis) {
@@ -83,33 +86,25 @@ RTCScene scene_of(const InstancerScene& instancer) {
 
 void copies_bounds_callback(const RTCBoundsFunctionArguments* args) {
   const auto& instancer = *static_cast<const InstancerScene*>(args->geometryUserPtr);
-  const Bounds b =
-      instancer.bounds_of_copy(args->primID, args->timeStep, instancer.inner().bounds());
-  *args->bounds_o = {b.lower.x, b.lower.y, b.lower.z, 0.0F, b.upper.x, b.upper.y, b.upper.z, 0.0F};
+  *args->bounds_o =
+      to_embree(instancer.bounds_of_copy(args->primID, args->timeStep, instancer.inner().bounds()));
 }
 
 void intersect_copy(const RTCIntersectFunctionNArguments* args) {
   if (args->valid[0] == 0) return;
   auto& found = *reinterpret_cast<RTCRayHit*>(args->rayhit);
   const auto& instancer = *static_cast<const InstancerScene*>(args->geometryUserPtr);
-  RTCRayHit query;
-  query.ray = transformed(found.ray, instancer.pose(args->primID, found.ray.time).to_copy);
-  query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-  query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
-  trace_nearest(scene_of(instancer), query);
-  if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return;
-  found.ray.tfar = query.ray.tfar;
-  // What was met in the copy stands on its own, or is a scene of the frames or of its own mesh.
-  const uint32_t instance = query.hit.instID[0];
-  SceneHit inner;
-  inner.number = instance == RTC_INVALID_GEOMETRY_ID ? query.hit.geomID : instance;
-  inner.inner = query.hit.geomID;
+  const auto inner =
+      meet_nearest(scene_of(instancer),
+                   transformed(found.ray, instancer.pose(args->primID, found.ray.time).to_copy));
+  if (!inner) return;
+  found.ray.tfar = static_cast<float>(inner->t);
   // Which copy and which of its objects travel where the normal would, which nobody reads.
   found.hit.Ng_x = std::bit_cast<float>(args->primID);
-  found.hit.Ng_y = std::bit_cast<float>(instancer.inner().object_of(inner));
+  found.hit.Ng_y = std::bit_cast<float>(instancer.inner().object_of(*inner));
   found.hit.u = 0.0F;
   found.hit.v = 0.0F;
-  found.hit.primID = query.hit.primID;
+  found.hit.primID = inner->primitive;
   found.hit.geomID = args->geomID;
   found.hit.instID[0] = args->context->instID[0];
 }

@@ -63,7 +63,8 @@ class PlacedObject {
   SurfacePoint quadric_place(const Vec3d& near, float time) const;
 
   Bounds bounds() const { return bounds_; }  ///< in the world, or in the space of copies
-  /// The same at a step of motion(); not of meshes in world space.
+  /// The box of the whole object at a step of motion(). Not for meshes in world space, whose
+  /// vertices move instead.
   Bounds bounds_at_step(size_t step) const;
 
  private:

@@ -78,8 +78,7 @@ class TreeWalk {
 
   std::optional<SceneHit> nearest(const TreeScene& scene) {
     walk(scene, world(), {});
-    if (!found_) return std::nullopt;
-    best_.t = best_t_;
+    if (best_.t == kNowhere) return std::nullopt;
     return best_;
   }
 
@@ -89,6 +88,7 @@ class TreeWalk {
   }
 
  private:
+  static constexpr double kNowhere = std::numeric_limits<double>::infinity();
   static constexpr uint32_t kNone = std::numeric_limits<uint32_t>::max();
 
   /// What of the scenes the walk is in.
@@ -125,12 +125,21 @@ class TreeWalk {
     const std::array<Vec3d, 3> exact{Vec3d(corners[0]), Vec3d(corners[1]), Vec3d(corners[2])};
     const std::optional<double> t = meet_corners(exact, local);
     if (!t) return false;
-    MovingBounds box;
-    for (const Vec3& corner : corners) box.begin.include(corner);
-    if (scene.moves_) box = with_margin({box.begin, box.begin});
+    Bounds box;
+    for (const Vec3& corner : corners) box.include(corner);
     const TreeScene::Item item = scene.items_[number];
     return take(scene.geometries_[item.geometry], item.primitive, *t, place,
-                enter_box(local.slabs, scene.moves_ ? box.at(time_) : box.begin, t_min_));
+                enter_box(local.slabs, scene.at_time({box, box}, time_), t_min_));
+  }
+
+  bool meet_moving(const TreeScene& scene, const TreeScene::Geometry& geometry, uint32_t primitive,
+                   const SpaceRay& local, const Place& place) {
+    const MeshBuffers& mesh = *geometry.mesh;
+    const std::optional<double> t =
+        meet_corners(mesh.moving_corners(mesh.indices[primitive], ray_.time), local);
+    // Its box takes longer than the triangle.
+    return t && take(geometry, primitive, *t, place,
+                     enter_box(local.slabs, scene.bounds_at(geometry, primitive, time_), t_min_));
   }
 
   /// Where the ray meets a triangle, if that is of interest.
@@ -145,11 +154,7 @@ class TreeWalk {
   bool meet(const TreeScene& scene, const TreeScene::Geometry& geometry, uint32_t primitive,
             const SpaceRay& local, const Place& place) {
     if (geometry.kind == TreeScene::Kind::mesh) {
-      // Boxes of moving triangles take longer than the triangles.
-      const std::optional<double> t =
-          meet_corners(moving_corners(*geometry.mesh, primitive), local);
-      return t && take(geometry, primitive, *t, place,
-                       enter_box(local.slabs, scene.bounds_at(geometry, primitive, time_), t_min_));
+      return meet_moving(scene, geometry, primitive, local, place);
     }
     const float enters =
         enter_box(local.slabs, scene.bounds_at(geometry, primitive, time_), t_min_);
@@ -186,10 +191,6 @@ class TreeWalk {
     return false;
   }
 
-  std::array<Vec3d, 3> moving_corners(const MeshBuffers& mesh, uint32_t primitive) const {
-    return mesh.moving_corners(mesh.indices[primitive], ray_.time);
-  }
-
   static Place deeper(const Place& place, float enters) {
     Place inside = place;
     inside.enters = std::max(inside.enters, enters);
@@ -197,7 +198,7 @@ class TreeWalk {
   }
 
   bool is_wanted(double t) const {
-    return t > static_cast<double>(t_min_) && t < static_cast<double>(ray_.t_max) && t <= best_t_;
+    return t > static_cast<double>(t_min_) && t < static_cast<double>(ray_.t_max) && t <= best_.t;
   }
 
   /// Takes a surface at distance `t` that is in a box which the ray comes into at `enters`.
@@ -215,13 +216,12 @@ class TreeWalk {
     hit.copied = object;
     hit.copy = place.copy_number;
     hit.primitive = primitive;
+    hit.t = t;
     // Where two are equally far, the first of the world's placements.
     const Rank rank(place.copy != nullptr ? place.scene : object, place.copy_number, object,
                     primitive);
-    if (t > best_t_ || (t == best_t_ && found_ && rank_ < rank)) return false;
-    found_ = true;
+    if (t > best_.t || (t == best_.t && rank_ < rank)) return false;
     best_ = hit;
-    best_t_ = t;
     rank_ = rank;
     limit_ = std::nextafter(static_cast<float>(t), kInfinity);
     return false;
@@ -233,12 +233,10 @@ class TreeWalk {
   float time_;  ///< of the shutter, 0 to 1
   unsigned mask_;
   float t_min_;
-  float limit_;  ///< no nearer than best_t_
+  float limit_;  ///< no nearer than best_.t
   bool any_ = false;
-  bool found_ = false;
-  double best_t_ = std::numeric_limits<double>::infinity();
   Rank rank_;
-  SceneHit best_;
+  SceneHit best_{.t = kNowhere};
 };
 
 uint32_t TreeScene::Geometry::size() const {
@@ -311,7 +309,8 @@ TreeScene::TreeScene(std::vector<Geometry> geometries) : geometries_(std::move(g
     for_chunks(geometry.size(), [&](size_t begin, size_t end) {
       for (size_t i = begin; i < end; ++i) {
         items[first + i] = {g, static_cast<uint32_t>(i)};
-        boxes[first + i] = bounds_of(geometry, static_cast<uint32_t>(i));
+        const MovingBounds bounds = geometry.bounds_of(static_cast<uint32_t>(i));
+        boxes[first + i] = moves_ && !bounds.begin.empty() ? with_margin(bounds) : bounds;
       }
     });
   }
@@ -345,9 +344,8 @@ TreeScene::TreeScene(std::vector<Geometry> geometries) : geometries_(std::move(g
   tree_.forget_order();
 }
 
-MovingBounds TreeScene::bounds_of(const Geometry& geometry, uint32_t primitive) const {
-  const MovingBounds bounds = geometry.bounds_of(primitive);
-  return moves_ && !bounds.begin.empty() ? with_margin(bounds) : bounds;
+Bounds TreeScene::at_time(const MovingBounds& bounds, float time) const {
+  return moves_ ? with_margin(bounds).at(time) : bounds.begin;
 }
 
 std::optional<SceneHit> TreeScene::nearest(const Ray& ray, RayKind kind, float t_min) const {

@@ -49,12 +49,12 @@ class TreeScene final : public RayScene {
  private:
   friend class TreeWalk;
 
-  /// Of a primitive, as the hierarchy has it.
-  MovingBounds bounds_of(const Geometry& geometry, uint32_t primitive) const;
-  /// The same at a time of the shutter.
+  /// The box of a primitive as the hierarchy has it at `time`, 0 to 1: where something in the scene
+  /// moves, with room for rounding.
+  Bounds at_time(const MovingBounds& bounds, float time) const;
+  /// As at_time(), of a primitive of a geometry.
   Bounds bounds_at(const Geometry& geometry, uint32_t primitive, float time) const {
-    const MovingBounds bounds = bounds_of(geometry, primitive);
-    return moves_ ? bounds.at(time) : bounds.begin;
+    return at_time(geometry.bounds_of(primitive), time);
   }
 
   /// A primitive of a geometry.

@@ -184,6 +184,11 @@ def _shading(mesh: Any) -> tuple[str, Optional[Array]]:
     return domain, flat.reshape(-1, 3)
 
 
+def across(corners: Array) -> Array:
+    """(t, 3): along the normals of triangles (t, 3, 3), as long as they are large."""
+    return numpy.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+
+
 def leaning(surface: Surface) -> float:
     """The share of the area where shading normals lean far from their triangles, of many triangles by some of them."""
     domain, normals = surface.shading()
@@ -192,10 +197,10 @@ def leaning(surface: Surface) -> float:
     every = slice(None, None, len(surface.vertex_triangles) // _SOME + 1)
     vertices = surface.vertex_triangles[every]
     corners = surface.positions[vertices].astype("float64")
-    across = numpy.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    directions = across(corners)
     leant = normals[vertices if domain == "point" else surface.triangles[every]]
-    size = numpy.linalg.norm(across, axis=1)
-    is_far = (leant * across[:, None]).sum(axis=2) < _FAR * size[:, None]
+    size = numpy.linalg.norm(directions, axis=1)
+    is_far = (leant * directions[:, None]).sum(axis=2) < _FAR * size[:, None]
     return float((is_far.mean(axis=1) * size).sum() / max(float(size.sum()), 1e-30))
 
 

@@ -7,7 +7,7 @@ from typing import Any, NamedTuple, Optional
 import numpy
 from hyades import materials
 
-from ..meshes import Surface
+from ..meshes import Surface, across
 from . import graph, values
 from .evaluate import Evaluator
 from .graph import Output
@@ -138,24 +138,19 @@ class _Moved(Surface):
             return "point", normals
         counts = self._array("face_sizes", self.mesh.polygons, "loop_total", 1, "int32")
         faces = self._array("triangle_faces", self.mesh.loop_triangles, "polygon_index", 1, "int32")
-        across = _across(self.positions[self.vertex_triangles].astype("float64"))
-        own = numpy.stack([numpy.bincount(faces, column, len(smooth)) for column in across.T], axis=1)
+        directions = across(self.positions[self.vertex_triangles].astype("float64"))
+        own = numpy.stack([numpy.bincount(faces, column, len(smooth)) for column in directions.T], axis=1)
         own /= numpy.maximum(numpy.linalg.norm(own, axis=1, keepdims=True), 1e-30)
         is_smooth = numpy.repeat(smooth, counts)[:, None]
         at_corners = numpy.where(is_smooth, normals[self.corner_vertices], numpy.repeat(own, counts, axis=0))
         return "corner", at_corners.astype("float32")
 
 
-def _across(corners: Array) -> Array:
-    """(t, 3): along the normals of triangles (t, 3, 3), as long as they are large."""
-    return numpy.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-
-
 def _smooth_normals(positions: Array, triangles: Array) -> Array:
     """(v, 3): the mean of the triangles around each vertex, by their angles."""
     corners = positions[triangles].astype("float64")
     result = numpy.zeros((len(positions), 3))
-    face = _across(corners)
+    face = across(corners)
     face /= numpy.maximum(numpy.linalg.norm(face, axis=1, keepdims=True), 1e-30)
     for i in range(3):
         a, b = corners[:, (i + 1) % 3] - corners[:, i], corners[:, (i + 2) % 3] - corners[:, i]

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy
 
-from ..meshes import Surface
+from ..meshes import Surface, across
 from .evaluate.points import Points, Varies
 
 Array = Any
@@ -66,7 +66,7 @@ class PartPoints(Points):
     def true_normal(self) -> Array:
         surface = self.part.surface
         corners = surface.positions[surface.corner_vertices[self.corner]].astype("float64")
-        found = numpy.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+        found = across(corners)
         return found / numpy.maximum(numpy.linalg.norm(found, axis=1, keepdims=True), 1e-30)
 
     def generated(self) -> Array:
