@@ -83,8 +83,11 @@ class _Join:
         first = values[0]
         if isinstance(first, Described) and all(type(value) is type(first) for value in values):
             return self.described(values, where, blurs)
-        if all(isinstance(value, MeshData) for value in values) and key.takes == "mesh file":
-            return self._meshes(values)
+        if key.takes == "file or sequence":
+            if all(isinstance(value, MeshData) for value in values):
+                return self._meshes(values)
+            if all(isinstance(value, str) for value in values):
+                return self._files(values)
         if isinstance(first, (list, tuple)) and all(isinstance(v, (list, tuple)) for v in values):
             if len({len(value) for value in values}) == 1 and all(isinstance(v, Described) for v in first):
                 return [self._value(key, list(column), where, None, blurs) for column in zip(*values)]
@@ -114,6 +117,11 @@ class _Join:
             if at in (0, last) or not (values[at - 1] == value == values[at + 1])
         }
         return Keys(kept)
+
+    def _files(self, paths: list[str]) -> Any:
+        """A file for each frame."""
+        held = self._at_own_times(paths)
+        return held[0] if len(set(held)) == 1 else dict(zip(self._frames, held))
 
     def _meshes(self, meshes: list[MeshData]) -> dict[int, MeshData]:
         """A mesh for each frame; while the shutter is open it moves on a straight line to that of the next one, which

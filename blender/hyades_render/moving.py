@@ -3,6 +3,7 @@ Vector also a frame later, and joined to one job. A moment of the job is when it
 
 from __future__ import annotations
 
+import itertools
 from typing import Any
 
 import hyades
@@ -22,7 +23,8 @@ class Moments:
         self._times: list[float] = []
         self._of_frames: list[int | None] = []
         self._jobs: list[hyades.Job] = []
-        self._complaints: list[Complaint] = []
+        self._of_moments: list[list[Complaint]] = []
+        self._complaints: list[Complaint] = []  # of all moments together
         self._names = Names()
         self._shutter = 0.0
 
@@ -54,7 +56,9 @@ class Moments:
             self._tell_of_copies(moving_copies.spread(self._jobs, self._names))
             job, complaints = joined_frames.join(self._times, self._of_frames, self._jobs)
         job.frames = hyades.Frames(range=frames, fps=job.frames.fps, shutter=self._shutter)
-        for complaint in complaints:
+        # While the shutter is open nothing else is there than at the frame's own time.
+        own = [found for found, frame in zip(self._of_moments, self._of_frames) if frame is not None]
+        for complaint in itertools.chain(*own, complaints):
             self._complain(complaint.where, complaint.what)
         return Exported(job, list(self._complaints), self._names)
 
@@ -79,8 +83,7 @@ class Moments:
         self._jobs.append(exported.job)
         self._names.objects |= exported.names.objects
         self._names.materials |= exported.names.materials
-        for complaint in exported.complaints:
-            self._complain(complaint.where, complaint.what)
+        self._of_moments.append(exported.complaints)
 
     def _complain(self, where: str, what: str) -> None:
         complaint = Complaint(where, what)

@@ -17,7 +17,7 @@
 #include "core/job/check_colors.h"
 #include "core/job/check_frame.h"
 #include "core/job/check_materials.h"
-#include "core/job/mesh_files.h"
+#include "core/job/frame_files.h"
 #include "core/job/ocio_files.h"
 #include "core/job/reference_graph.h"
 #include "core/job/references.h"
@@ -181,11 +181,11 @@ Status may_name(const std::string& script, const std::string& reference, AssetRe
   return script.empty() ? Status() : assets.may_name(script, reference);
 }
 
-/// Opens a file, or all files of a UDIM pattern or a sequence of meshes, so that whoever records
+/// Opens a file, or all files of a UDIM pattern or a sequence, so that whoever records
 /// what a job opens knows them.
-Status open_all(const FileUse& use, AssetResolver& assets, MeshSequenceOpener& sequences) {
+Status open_all(const FileUse& use, AssetResolver& assets, FileSequenceOpener& sequences) {
   const std::string& reference = use.reference;
-  if (use.per_frame && is_mesh_sequence(reference)) return sequences.open(reference);
+  if (use.per_frame && is_file_sequence(reference)) return sequences.open(reference);
   std::vector<std::string> files = {reference};
   if (is_udim(reference)) {
     const auto tiles = udim_tiles(assets, reference);
@@ -201,7 +201,7 @@ Status open_all(const FileUse& use, AssetResolver& assets, MeshSequenceOpener& s
 
 void check_files(ReadContext& context, AssetResolver& assets) {
   std::set<std::pair<std::string, std::string>> good;  // of scripts and files
-  MeshSequenceOpener sequences(context.job, assets);
+  FileSequenceOpener sequences(context.job, assets);
   for (const FileUse& use : context.files) {
     if (good.contains({use.script, use.reference})) continue;
     const Status named = may_name(use.script, use.reference, assets);

@@ -71,7 +71,7 @@ inline const std::array<std::string, 2> kVdbPlaceNames = {"fit", "native"};
 
 /// How the density of a medium varies in a body; by exactly one of its kinds.
 struct DensityDesc {
-  std::string vdb;               ///< file
+  std::string vdb;               ///< file, or one for each frame (frame_files.h)
   std::string grid = "density";  ///< of that file
   std::string tint;              ///< grid of that file: colour of scattered light; empty: white
   std::string place = kVdbPlaceNames[0];  ///< of the vdb: of kVdbPlaceNames
@@ -83,7 +83,7 @@ struct DensityDesc {
 
   template <class Self, class Visitor>
   static void fields(Self& self, Visitor& visit) {
-    visit.file("vdb", self.vdb);
+    visit.frame_file("vdb", self.vdb);
     visit.text("grid", self.grid, "the name of a grid of numbers in the file");
     visit.text("tint", self.tint, "the name of a grid of colours in the file");
     visit.choice("place", self.place, kVdbPlaceNames);

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "core/job/mesh_files.h"
+#include "core/job/frame_files.h"
 
 namespace hyades::core {
 
@@ -132,11 +132,11 @@ void FieldWriter::put_file(std::string_view key, const std::string& reference) {
   }
 }
 
-void FieldWriter::mesh_file(const KeyName& key, const std::string& reference) {
-  if (!is_mesh_sequence(reference)) return put_file(key.line, reference);
+void FieldWriter::frame_file(const KeyName& key, const std::string& reference) {
+  if (!is_file_sequence(reference)) return put_file(key.line, reference);
   const JobTime& now = moments_.front();
-  put_file(key.line, mesh_file_at(reference, now));
-  const std::string next = mesh_file_at(reference, {now.seconds, now.frame + 1.0});
+  put_file(key.line, frame_file_at(reference, now));
+  const std::string next = frame_file_at(reference, {now.seconds, now.frame + 1.0});
   if (ahead_ && hashes_.contains(next)) put_file("next", next);
   sequences_.insert(reference);
 }

@@ -55,7 +55,7 @@ class FieldWriter : public FieldVisitor<FieldWriter> {
   void put_file(std::string_view key, const std::string& reference);
   /// Assets that no put_file has named, but for those in `except`.
   void put_other_files(const std::set<std::string>& except);
-  /// The sequences of meshes that are named so far.
+  /// The sequences of files that are named so far.
   const std::set<std::string>& sequences() const { return sequences_; }
 
   /// Keys until the matching leave() stand below `name`.
@@ -69,9 +69,9 @@ class FieldWriter : public FieldVisitor<FieldWriter> {
 
   // As a visitor of keys.
   void file(const KeyName& key, const std::string& reference) { put_file(key.line, reference); }
-  /// The file of a mesh at a frame of the job, of a sequence that and, where frames look ahead, the
-  /// next one, as far as they are known.
-  void mesh_file(const KeyName& key, const std::string& reference);
+  /// The file at a frame of the job, of a sequence that and, where frames look ahead, the next one,
+  /// as far as they are known.
+  void frame_file(const KeyName& key, const std::string& reference);
   void children(const KeyName& key, const std::vector<ObjectDesc>& children);
   void light_group(const KeyName& key, const std::string& group) {
     if (!group.empty()) put(key.line, group);

@@ -241,10 +241,10 @@ void MapReader::file(std::string_view key, std::string& target) {
                             context_.origins.script_at(where)});
 }
 
-void MapReader::mesh_file(std::string_view key, std::string& target) {
+void MapReader::frame_file(std::string_view key, std::string& target) {
   const size_t before = context_.files.size();
   file(key, target);
-  if (listing()) tell(key, {.takes = "mesh file"});
+  if (listing()) tell(key, {.takes = "file or sequence"});
   if (context_.files.size() > before) context_.files.back().per_frame = true;
 }
 

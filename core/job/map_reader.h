@@ -93,7 +93,7 @@ class MapReader {
   void file(std::string_view key, std::string& target);
   /// The file of a mesh, which may be one for each frame, relative to where it is written; that it
   /// opens is checked at the end.
-  void mesh_file(std::string_view key, std::string& target);
+  void frame_file(std::string_view key, std::string& target);
   /// A list of exactly as many numbers as `target` has.
   bool numbers(std::string_view key, std::span<float> target, const Range& range);
   bool integers(std::string_view key, std::span<int32_t> target, int64_t low, int64_t high);

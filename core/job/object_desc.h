@@ -68,7 +68,7 @@ struct ObjectDesc {
   std::string name;
   SourceLocation where;
   std::string shape;                        ///< of kShapeNames, mesh, curves, instance or group
-  std::string mesh;                         ///< file, or one for each frame (mesh_files.h)
+  std::string mesh;                         ///< file, or one for each frame (frame_files.h)
   std::string curves;                       ///< file of strands
   std::string basis = kCurveBasisNames[0];  ///< curves: what their points mean
   std::string part;  ///< mesh: the material of the file whose triangles are meant; empty: all
@@ -125,7 +125,7 @@ struct ObjectDesc {
  private:
   template <class Self, class Visitor>
   static void fields_of_shape(Self& self, Visitor& visit) {
-    if (self.shape == "mesh") visit.mesh_file("mesh", self.mesh);
+    if (self.shape == "mesh") visit.frame_file("mesh", self.mesh);
     visit.enter_section("objects.shapes");
     visit.map("emit", "objects.emit", self.emit);
     visit.enter_section("objects." + self.shape);

@@ -31,7 +31,7 @@ struct FileUse {
   std::string reference;  ///< relative to the job's folder
   SourceLocation where;
   std::string label;
-  bool per_frame = false;  ///< a mesh, which may have a file for each frame (is_mesh_sequence)
+  bool per_frame = false;  ///< there may be one for each frame (is_file_sequence)
   std::string script{};    ///< that names it, and may not name every file; empty: the job does
 };
 

@@ -5,8 +5,8 @@
 
 #include "core/base/version.h"
 #include "core/job/field_writer.h"
+#include "core/job/frame_files.h"
 #include "core/job/layers.h"
-#include "core/job/mesh_files.h"
 #include "core/job/noise_threshold.h"
 #include "core/job/old_lines.h"
 #include "core/job/resolved_parts.h"
@@ -94,7 +94,7 @@ std::string resolved_job_text(const Job& job, int32_t frame,
   for (const LightDesc& light : job.lights) write_light(out, light);
   out.map("environment", "", job.environment);
   if (!job.atmosphere.empty()) out.put("atmosphere", job.atmosphere);
-  // Other frames' meshes are no business of this one.
+  // Other frames' files are no business of this one.
   std::set<std::string> others = sequence_files(job, out.sequences());
   others.insert(job.includes.begin(), job.includes.end());
   out.put_other_files(others);

@@ -17,8 +17,8 @@
 #include "core/job/check_colors.h"
 #include "core/job/check_frame.h"
 #include "core/job/darkness.h"
+#include "core/job/frame_files.h"
 #include "core/job/layers.h"
-#include "core/job/mesh_files.h"
 #include "core/scene/add_bodies.h"
 #include "core/scene/appearance.h"
 #include "core/scene/camera_makers.h"
@@ -319,7 +319,7 @@ class SceneBuilder {
                                                            : then.instancer->to_world.front());
       const auto& mesh = scene_->world->placement(i).shape.mesh;
       const bool deforms = then.instancer == nullptr && then.shape.mesh != mesh &&
-                           then.shape.mesh != nullptr && is_mesh_sequence((*next)[i].desc->mesh) &&
+                           then.shape.mesh != nullptr && is_file_sequence((*next)[i].desc->mesh) &&
                            same_topology(*mesh, *then.shape.mesh);
       motion->meshes.push_back(deforms ? then.shape.mesh : nullptr);
     }

@@ -9,7 +9,7 @@
 
 #include "core/geometry/displace.h"
 #include "core/job/field_writer.h"
-#include "core/job/mesh_files.h"
+#include "core/job/frame_files.h"
 #include "core/job/references.h"
 #include "core/job/resolved_parts.h"
 #include "core/scene/shape_makers.h"
@@ -55,7 +55,7 @@ bool looks_at_uv(const TextureDesc& texture) {
 std::string key_of(const ObjectDesc& object, const DisplacementSetting& setting,
                    const std::vector<const TextureDesc*>& textures) {
   FieldWriter out({setting.looks.time()}, {});
-  out.put("mesh", mesh_file_at(object.mesh, setting.looks.time()));
+  out.put("mesh", frame_file_at(object.mesh, setting.looks.time()));
   out.put("part", object.part);
   out.put("normals", object.smooth);
   out.put("tangents", setting.extras.tangents);
@@ -88,8 +88,8 @@ Result<std::shared_ptr<const TriangleMesh>> make_displaced(const ObjectDesc& obj
   const auto asked = mesh_use_of(object, {});
   if (!asked) return asked.error();
   SceneCache& cache = setting.looks.cache();
-  const auto base = is_mesh_sequence(object.mesh)
-                        ? cache.frame_mesh(mesh_file_at(object.mesh, setting.looks.time()),
+  const auto base = is_file_sequence(object.mesh)
+                        ? cache.frame_mesh(frame_file_at(object.mesh, setting.looks.time()),
                                            base_use_of(object, setting.extras))
                         : cache.mesh(object.mesh, base_use_of(object, setting.extras));
   if (!base) return base.error();

@@ -12,7 +12,7 @@
 #include <utility>
 #include <variant>
 
-#include "core/job/mesh_files.h"
+#include "core/job/frame_files.h"
 #include "core/job/references.h"
 #include "core/scene/appearance.h"
 #include "core/scene/displacement.h"
@@ -111,7 +111,7 @@ class Flattener {
     flat.placement.visible_to_camera = visible;
     flat.placement.changes_between_frames = chain_is_animated() || size_changes(object) ||
                                             displacement_changes(job_, object) ||
-                                            is_mesh_sequence(object.mesh);
+                                            is_file_sequence(object.mesh);
     flat.placement.to_world = std::move(to_world);
     flat_.push_back(std::move(flat));
     if (object.shape == "cylinder" && object.caps) add_caps(object, name, look, visible);

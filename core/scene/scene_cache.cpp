@@ -157,32 +157,29 @@ std::shared_ptr<const Sky> SceneCache::sky(const SkySettings& settings) {
   return sky_;
 }
 
-Result<std::shared_ptr<const VdbGrid<float>>> SceneCache::vdb_numbers(const std::string& file,
-                                                                      const std::string& grid) {
-  return vdb_numbers_.get({file, grid}, [&]() -> Result<std::shared_ptr<const VdbGrid<float>>> {
-    auto bytes = assets_.open(file);
+Result<std::shared_ptr<const VdbGrid<float>>> SceneCache::vdb_numbers(const VdbUse& use) {
+  return vdb_numbers_.get(use, [&]() -> Result<std::shared_ptr<const VdbGrid<float>>> {
+    auto bytes = assets_.open(use.file);
     if (!bytes) return bytes.error();
-    auto read = read_vdb_numbers(*bytes, grid);
-    if (!read) return read.error().in(file);
+    auto read = read_vdb_numbers(*bytes, use.grid);
+    if (!read) return read.error().in(use.file);
     return *read;
   });
 }
 
-Result<std::shared_ptr<const VdbGrid<Rgb>>> SceneCache::vdb_colors(const std::string& file,
-                                                                   const std::string& grid) {
-  return vdb_colors_.get({file, grid}, [&]() -> Result<std::shared_ptr<const VdbGrid<Rgb>>> {
-    auto bytes = assets_.open(file);
+Result<std::shared_ptr<const VdbGrid<Rgb>>> SceneCache::vdb_colors(const VdbUse& use) {
+  return vdb_colors_.get(use, [&]() -> Result<std::shared_ptr<const VdbGrid<Rgb>>> {
+    auto bytes = assets_.open(use.file);
     if (!bytes) return bytes.error();
-    auto read = read_vdb_colors(*bytes, grid);
-    if (!read) return read.error().in(file);
+    auto read = read_vdb_colors(*bytes, use.grid);
+    if (!read) return read.error().in(use.file);
     return *read;
   });
 }
 
-Result<std::shared_ptr<const VdbDensity>> SceneCache::vdb_density(const std::string& file,
-                                                                  const std::string& grid) {
-  return vdb_densities_.get({file, grid}, [&]() -> Result<std::shared_ptr<const VdbDensity>> {
-    auto numbers = vdb_numbers(file, grid);
+Result<std::shared_ptr<const VdbDensity>> SceneCache::vdb_density(const VdbUse& use) {
+  return vdb_densities_.get(use, [&]() -> Result<std::shared_ptr<const VdbDensity>> {
+    auto numbers = vdb_numbers(use);
     if (!numbers) return numbers.error();
     const std::shared_ptr<const BrickGrid<float>> voxels(*numbers, &(*numbers)->voxels);
     VdbDensity density{*numbers, make_grid_density(voxels), nullptr};

@@ -54,6 +54,14 @@ struct ImageUse {
   auto operator<=>(const ImageUse&) const = default;
 };
 
+/// A grid of a .vdb.
+struct VdbUse {
+  std::string file;
+  std::string grid;
+  bool of_frame = false;  ///< only some frames look at it: kept as long as somebody uses it
+  auto operator<=>(const VdbUse&) const = default;
+};
+
 /// A grid as a density, in the space of its voxels.
 struct VdbDensity {
   std::shared_ptr<const VdbGrid<float>> grid;
@@ -106,14 +114,11 @@ class SceneCache {
   std::shared_ptr<const Sky> sky(const SkySettings& settings);
 
   /// A grid of numbers of a .vdb, and what tracking needs to know of it as a density.
-  Result<std::shared_ptr<const VdbGrid<float>>> vdb_numbers(const std::string& file,
-                                                            const std::string& grid);
-  Result<std::shared_ptr<const VdbDensity>> vdb_density(const std::string& file,
-                                                        const std::string& grid);
+  Result<std::shared_ptr<const VdbGrid<float>>> vdb_numbers(const VdbUse& use);
+  Result<std::shared_ptr<const VdbDensity>> vdb_density(const VdbUse& use);
 
   /// A grid of colours of a .vdb.
-  Result<std::shared_ptr<const VdbGrid<Rgb>>> vdb_colors(const std::string& file,
-                                                         const std::string& grid);
+  Result<std::shared_ptr<const VdbGrid<Rgb>>> vdb_colors(const VdbUse& use);
 
   /// A mesh made here (rectangle, box), shared between equal requests under `key`.
   std::shared_ptr<const TriangleMesh> made_mesh(const std::string& key,
@@ -138,6 +143,17 @@ class SceneCache {
   size_t image_memory() const;
 
  private:
+  template <class Value>
+  struct VdbMap {
+    OnceMap<VdbUse, Value> kept;
+    WeakMap<VdbUse, Value> of_frames;
+
+    template <class Make>
+    Result<std::shared_ptr<const Value>> get(const VdbUse& use, const Make& make) {
+      return use.of_frame ? of_frames.get(use, make) : kept.get(use, make);
+    }
+  };
+
   /// A file cut into its materials; one of frames is kept for a while only.
   Result<std::shared_ptr<const MeshParts>> parts_of(const std::string& file, bool of_frames);
 
@@ -165,9 +181,9 @@ class SceneCache {
   OnceMap<std::string, std::vector<int>> udims_;
   OnceMap<std::pair<std::string, SkyDensity>, EnvironmentMap> environment_maps_;
   OnceMap<std::string, Gobo> gobos_;
-  OnceMap<std::pair<std::string, std::string>, VdbGrid<float>> vdb_numbers_;
-  OnceMap<std::pair<std::string, std::string>, VdbGrid<Rgb>> vdb_colors_;
-  OnceMap<std::pair<std::string, std::string>, VdbDensity> vdb_densities_;
+  VdbMap<VdbGrid<float>> vdb_numbers_;
+  VdbMap<VdbGrid<Rgb>> vdb_colors_;
+  VdbMap<VdbDensity> vdb_densities_;
   Mutex sky_mutex_;
   SkySettings sky_settings_ HYADES_GUARDED_BY(sky_mutex_);
   std::shared_ptr<const Sky> sky_ HYADES_GUARDED_BY(sky_mutex_);

@@ -11,7 +11,7 @@
 
 #include "core/base/parallel.h"
 #include "core/base/udim.h"
-#include "core/job/mesh_files.h"
+#include "core/job/frame_files.h"
 #include "core/job/references.h"
 #include "core/scene/environment_makers.h"
 #include "core/scene/shape_makers.h"
@@ -119,14 +119,14 @@ class Walk {
     if (may_be_displaced(object)) visit_texture(object.displacement->texture);
     if (!seen_meshes_.insert({object.mesh, *use}).second) return;
     const std::string user = "object '" + object.name + "'";
-    if (!is_mesh_sequence(object.mesh)) {
+    if (!is_file_sequence(object.mesh)) {
       files_.meshes.push_back({object.mesh, *use, user, object.where});
       return;
     }
     std::set<std::string> seen;
     for (const JobTime& time : times_) {
       if (files_.meshes.size() > kMostFiles) return;
-      const std::string file = mesh_file_at(object.mesh, time);
+      const std::string file = frame_file_at(object.mesh, time);
       if (seen.insert(file).second) files_.meshes.push_back({file, *use, user, object.where, true});
     }
   }

@@ -8,7 +8,7 @@
 
 #include <fmt/format.h>
 
-#include "core/job/mesh_files.h"
+#include "core/job/frame_files.h"
 #include "core/scene/name_table.h"
 
 namespace hyades::core {
@@ -64,7 +64,7 @@ void note(const ShapeSetting& setting, std::string text) {
 Result<Shape> mesh_of_sequence(const ObjectDesc& object, const ShapeSetting& setting,
                                const MeshUse& use) {
   const auto file_of = [&](double frame) {
-    return mesh_file_at(object.mesh, {setting.time.seconds, frame});
+    return frame_file_at(object.mesh, {setting.time.seconds, frame});
   };
   std::string file = file_of(setting.time.frame);
   const bool places_only = setting.displacement == nullptr;
@@ -91,7 +91,7 @@ Result<Shape> mesh(const ObjectDesc& object, const ShapeSetting& setting) {
   if (setting.displacement != nullptr && is_displaced(object, setting.displacement->looks.time())) {
     auto displaced = displaced_mesh(object, *setting.displacement);
     if (!displaced) return displaced.error();
-    if (setting.shutter > 0.0F && is_mesh_sequence(object.mesh)) {
+    if (setting.shutter > 0.0F && is_file_sequence(object.mesh)) {
       note(setting, "its mesh is displaced: while the shutter is open, it does not deform");
     }
     return shape_of(*displaced);
@@ -100,7 +100,7 @@ Result<Shape> mesh(const ObjectDesc& object, const ShapeSetting& setting) {
                        ? Result<MeshUse>(base_use_of(object, setting.extras))
                        : mesh_use_of(object, setting.extras);
   if (!use) return use.error();
-  if (is_mesh_sequence(object.mesh)) return mesh_of_sequence(object, setting, *use);
+  if (is_file_sequence(object.mesh)) return mesh_of_sequence(object, setting, *use);
   auto loaded = setting.cache.mesh(object.mesh, *use);
   if (!loaded) return loaded.error();
   return shape_of(*loaded);

@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "core/job/frame_files.h"
 #include "core/media/noise_density.h"
 #include "core/media/shell_field.h"
 #include "core/scene/name_table.h"
@@ -82,6 +83,10 @@ Mat4 fitted(const Bounds& box, const Bounds& body) {
   return m;
 }
 
+VdbUse use_of(const DensityDesc& desc, const std::string& grid, const JobTime& time) {
+  return {frame_file_at(desc.vdb, time), grid, is_file_sequence(desc.vdb)};
+}
+
 Result<std::shared_ptr<const ColorField>> make_glow(const MediumDesc& desc, const JobTime& time,
                                                     const Mat4& to_file, SceneCache& cache) {
   GridGlow glow;
@@ -89,7 +94,7 @@ Result<std::shared_ptr<const ColorField>> make_glow(const MediumDesc& desc, cons
   const auto add = [&](const std::string& name, std::shared_ptr<const BrickGrid<float>>& voxels,
                        Mat4& to_grid) -> Status {
     if (name.empty()) return {};
-    auto grid = cache.vdb_numbers(desc.varying->vdb, name);
+    auto grid = cache.vdb_numbers(use_of(*desc.varying, name, time));
     if (!grid) return grid.error();
     voxels = {*grid, &(*grid)->voxels};
     to_grid = glm::inverse((*grid)->to_file) * to_file;
@@ -106,12 +111,13 @@ Result<PlacedVolume> make_vdb(const MediumDesc& medium, const JobTime& time, con
   const DensityDesc& desc = *medium.varying;
   const auto place = look_up(kVdbPlaces, desc.place, "place of a vdb");
   if (!place) return place.error();
-  auto density = cache.vdb_density(desc.vdb, desc.grid);
+  auto density = cache.vdb_density(use_of(desc, desc.grid, time));
   if (!density) return density.error();
   const Mat4& to_file = (*density)->grid->to_file;
-  Volume volume{(*density)->field, (*density)->majorants, nullptr, nullptr};
+  // The field keeps the density, so that other bodies of this frame find it.
+  Volume volume{{*density, (*density)->field.get()}, (*density)->majorants, nullptr, nullptr};
   if (!desc.tint.empty()) {
-    auto tint = cache.vdb_colors(desc.vdb, desc.tint);
+    auto tint = cache.vdb_colors(use_of(desc, desc.tint, time));
     if (!tint) return tint.error();
     volume.tint =
         make_grid_color({*tint, &(*tint)->voxels}, glm::inverse((*tint)->to_file) * to_file);

@@ -79,9 +79,9 @@ HINTS = {
     "units": "str | float",
     "file": "File",
     "files": "File | Sequence[File]",
-    "mesh file": "MeshFile",
+    "file or sequence": "FileOrSequence",
 }
-VALUES = ["Color", "ColorInput", "File", "GroupName", "MaterialName", "MediumName", "MeshFile", "Number",
+VALUES = ["Color", "ColorInput", "File", "FileOrSequence", "GroupName", "MaterialName", "MediumName", "Number",
           "NumberInput", "NumberOrVector", "FrameRange", "TextureInput", "Vector"]  # fmt: skip
 HEAD = '"""Made by python/generator/generate of the reader\'s own list of keys and of docs/job.md. Do not edit."""\n'
 

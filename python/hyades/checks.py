@@ -263,9 +263,9 @@ def file(key: Key, value: Any) -> Any:
     raise refuse("a path, an array of numpy, a MeshData, Places, Strands or Picture")
 
 
-def mesh_file(key: Key, value: Any) -> Any:
+def file_or_sequence(key: Key, value: Any) -> Any:
     if isinstance(value, Mapping) and value and all(isinstance(frame, int) for frame in value):
-        return {frame: file(key, mesh) for frame, mesh in value.items()}
+        return {frame: file(key, one) for frame, one in value.items()}
     return file(key, value)
 
 
@@ -309,7 +309,7 @@ _CHECKS: dict[str, Callable[[Key, Any], Any]] = {
     "units": units,
     "file": file,
     "files": files,
-    "mesh file": mesh_file,
+    "file or sequence": file_or_sequence,
 }
 
 
@@ -331,5 +331,5 @@ def _check(takes: str) -> Callable[[Key, Any], Any]:
 
 def checked(key: Key, value: Any) -> Any:
     """`value` as it is kept, or KeyRefused with what was expected."""
-    is_file = key.takes in ("file", "mesh file", "files")
+    is_file = key.takes in ("file", "file or sequence", "files")
     return _check(key.takes)(key, value if is_file else plain(value))

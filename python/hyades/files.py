@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import hashlib
 import os
+import re
 import secrets
+import shutil
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
@@ -20,7 +22,7 @@ class JobFiles:
 
     def __init__(self, folder: Path) -> None:
         self.folder = folder
-        self.made: dict[str, bytes] = {}
+        self.made: dict[str, bytes | Path] = {}  # or of which file it is a copy
         self.named: list[str] = []  # paths as the job has them
         self._known: dict[int, tuple[Any, str]] = {}  # what was encoded already, by its identity
 
@@ -41,38 +43,60 @@ class JobFiles:
         self._known[id(value)] = (value, name)  # kept, so that its identity stays its own
         return name
 
-    def _sequence(self, meshes: Mapping[int, Any]) -> str:
+    def _sequence(self, values: Mapping[int, Any]) -> str:
         """A file for each frame; the name is that of all their contents."""
-        encoded = {frame: _encoded(mesh) for frame, mesh in meshes.items()}
+        paths = {frame: os.path.abspath(value) for frame, value in values.items() if isinstance(value, (str, os.PathLike))}
+        if len(paths) == len(values):
+            return self._sequence_of_paths(paths)
+        encoded = {frame: _encoded(value) for frame, value in values.items()}
         ends = {end for _, end in encoded.values()}
-        if len(ends) != 1:
-            raise ValueError(f"a file for each frame has to be of one kind, not {sorted(ends)}")
+        _one_kind(ends)
         all_digest = _digest(b"".join(hashlib.sha256(data).digest() for data, _ in encoded.values()))
         end = ends.pop()
         for frame, (data, _) in encoded.items():
             self.made[f"{_FOLDER}/{all_digest}.{frame:04d}{end}"] = data
         return f"{_FOLDER}/{all_digest}.####{end}"
 
+    def _sequence_of_paths(self, paths: Mapping[int, str]) -> str:
+        """Files where they are if their names are those of one pattern, else copies of them that are: named by the
+        files' names, sizes and times, as they may be large."""
+        pattern = _pattern(paths)
+        if pattern is not None:
+            return self.reference(pattern)
+        ends = {os.path.splitext(path)[1] for path in paths.values()}
+        _one_kind(ends)
+        stats = [(path, os.stat(path)) for path in paths.values()]
+        all_digest = _digest("".join(f"{path}\n{stat.st_size}\n{stat.st_mtime_ns}\n" for path, stat in stats).encode())
+        end = ends.pop()
+        for frame, path in paths.items():
+            self.made[f"{_FOLDER}/{all_digest}.{frame:04d}{end}"] = Path(path)
+        return f"{_FOLDER}/{all_digest}.####{end}"
+
     def write(self) -> None:
-        """Brings what arrays have become to the disk; what is there has that content already."""
+        """Brings what arrays have become, and copies, to the disk; what is there has that content already."""
         for name, data in self.made.items():
             path = self.folder / name
             if not stays_in_folder(self.folder, path):
                 raise OSError(f"{path}: a link leads it out of the job's folder")
-            if path.exists() and path.stat().st_size == len(data):
+            size = data.stat().st_size if isinstance(data, Path) else len(data)
+            if path.exists() and path.stat().st_size == size:
                 continue
             path.parent.mkdir(parents=True, exist_ok=True)
             write_whole(path, data)
 
 
-def write_whole(path: Path, data: bytes) -> None:
-    """Nobody sees a part of the file. A link that stands there is replaced, not followed: the folder may have come
+def write_whole(path: Path, data: bytes | Path) -> None:
+    """A file of these bytes, or a copy of that one. Nobody sees a part of the file. A link that stands there is replaced, not followed: the folder may have come
     with somebody's scene."""
     temporary = path.with_name(f".{path.name[:200]}.{secrets.token_hex(8)}.part")
     flags = os.O_WRONLY | os.O_CREAT | os.O_EXCL | getattr(os, "O_BINARY", 0)
     try:
         with os.fdopen(os.open(temporary, flags, 0o666), "wb") as file:
-            file.write(data)
+            if isinstance(data, Path):
+                with data.open("rb") as source:
+                    shutil.copyfileobj(source, file)
+            else:
+                file.write(data)
         os.replace(temporary, path)
     except OSError:
         temporary.unlink(missing_ok=True)
@@ -105,6 +129,25 @@ def stays_in_folder(folder: Path, path: Path) -> bool:
     except (OSError, ValueError):
         return False
     return True
+
+
+def _pattern(paths: Mapping[int, str]) -> str | None:
+    """The name with # that means these files, by frame, if there is one: the last number of their names is the frame's."""
+    path = next(iter(paths.values()))
+    numbers = list(re.finditer(r"\d+", os.path.basename(path)))
+    if not numbers or "#" in path:
+        return None
+    at = len(path) - len(os.path.basename(path))
+    head, tail = path[:at + numbers[-1].start()], path[at + numbers[-1].end():]
+    for width in {len(numbers[-1].group()), 1}:
+        if all(other == f"{head}{frame:0{width}d}{tail}" for frame, other in paths.items()):
+            return head + "#" * width + tail
+    return None
+
+
+def _one_kind(ends: set[str]) -> None:
+    if len(ends) != 1:
+        raise ValueError(f"a file for each frame has to be of one kind, not {sorted(ends)}")
 
 
 def _encoded(value: Any) -> tuple[bytes, str]:

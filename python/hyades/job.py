@@ -22,7 +22,7 @@ _SECTION_OF = {
     "a medium's name": "media",
     "a group's name": "groups",
 }
-_FILES = ("file", "mesh file", "files")
+_FILES = ("file", "file or sequence", "files")
 
 
 @dataclass(kw_only=True, eq=False, repr=False)

@@ -69,5 +69,5 @@ GroupName: TypeAlias = Union[str, "Group"]
 """A group, or the name of one in the job."""
 File: TypeAlias = Union[str, "os.PathLike[str]", FileData, "numpy.ndarray[Any, Any]"]
 """A path, relative to the current folder; or an array (h, w) or (h, w, c): a picture."""
-MeshFile: TypeAlias = Union[File, Mapping[int, FileData]]
-"""A path, a MeshData, or one for each frame: {1: MeshData(...), 2: ...}."""
+FileOrSequence: TypeAlias = Union[File, Mapping[int, Union[FileData, str, "os.PathLike[str]"]]]
+"""A path, a MeshData, or one for each frame: {1: MeshData(...), 2: ...}, {1: "fire1.vdb", 2: ...}."""

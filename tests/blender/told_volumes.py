@@ -76,15 +76,20 @@ class Volumes(ExportTest):
         job, said = self.export()
         self.assertEqual((str(job.objects["Smoke"].interior.density.vdb), said), (str(self.path), ""))
 
-    def test_a_file_for_each_frame_is_told(self) -> None:
-        """Jobs have one file for all frames."""
+    def test_a_sequence_is_a_file_for_each_frame(self) -> None:
         body, _ = self.smoke()
-        vdb_file.write(self.path.with_name("smoke_0002.vdb"), {"density": 2 * _FULL})
+        second = vdb_file.write(self.path.with_name("smoke_0002.vdb"), {"density": 2 * _FULL})
         body.data.is_sequence, body.data.frame_duration = True, 2
-        exported = animation.job_of(self.scene, frames=range(1, 3), name="film")
-        self.assertEqual(str(exported.job.objects["Smoke"].interior.density.vdb), str(self.path))
-        words = "object 'Smoke' > interior > density > vdb: changes over time in a way that a job cannot say"
-        self.assertIn(words, "\n".join(map(str, exported.complaints)))
+        for blurs, start, expected in (
+            (False, 1, {1: self.path, 2: second}),
+            (True, 1, {1: self.path, 2: second}),
+            (False, 2, {2: self.path, 3: second}),
+        ):
+            body.data.frame_start, self.scene.render.use_motion_blur = start, blurs
+            exported = animation.job_of(self.scene, frames=range(start, start + 2), name="film")
+            made = exported.job.objects["Smoke"].interior.density.vdb
+            self.assertEqual({frame: str(path) for frame, path in made.items()}, {f: str(p) for f, p in expected.items()})
+            self.assertEqual("\n".join(map(str, exported.complaints)), "")
 
     def test_phase_functions_are_the_jobs_or_told(self) -> None:
         made = bpy.data.materials.new("Haze")

@@ -1,6 +1,7 @@
 """Pictures and meshes: to files and back, and files that are no pictures."""
 
 import pathlib
+import re
 import struct
 import tempfile
 import unittest
@@ -144,6 +145,31 @@ class Meshes(unittest.TestCase):
         pixels = numpy.zeros((2, 2, 3), "uint8")
         job.textures = {"c": textures.Image(file=pixels), "d": textures.Image(file=pixels.copy())}
         self.assertEqual(len(job.document().files.made), 2)
+
+    def test_files_of_frames_are_named_by_their_pattern_or_copied(self) -> None:
+        from hyades import media
+
+        with tempfile.TemporaryDirectory() as scratch:
+            folder = pathlib.Path(scratch)
+            for name in ("fire_0009.vdb", "fire_0010.vdb", "other.vdb"):
+                (folder / name).write_bytes(name.encode())
+
+            def named(files: dict[int, str]) -> tuple[str, dict[str, bytes]]:
+                paths = {frame: str(folder / name) for frame, name in files.items()}
+                fire = media.Medium(absorption=1, density=media.Density(vdb=paths))
+                document = hyades.Job(media={"fire": fire}).document(folder)
+                document.write(folder / "job.yaml")
+                found = re.search(r"vdb: ([^},]*)", str(document.text))
+                self.assertIsNotNone(found, document.text)
+                made = {path.name.partition(".")[2]: path.read_bytes() for path in (folder / "assets").glob("*")}
+                return found[1].strip('"'), made
+
+            self.assertEqual(named({9: "fire_0009.vdb", 10: "fire_0010.vdb"}), ("fire_####.vdb", {}))
+            name, made = named({1: "fire_0009.vdb", 2: "other.vdb"})
+            self.assertRegex(name, r"^assets/[0-9a-f]{16}\.####\.vdb$")
+            self.assertEqual(made, {"0001.vdb": b"fire_0009.vdb", "0002.vdb": b"other.vdb"})
+            with self.assertRaises(FileNotFoundError):
+                named({1: "fire_0009.vdb", 2: "nothing.vdb"})
 
 
 if __name__ == "__main__":

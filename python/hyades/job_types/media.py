@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import ClassVar, Literal
 
 from ..described import Described, key
-from ..values import Color, File, Number, NumberOrVector, Vector
+from ..values import Color, File, FileOrSequence, Number, NumberOrVector, Vector
 from .transforms import Step
 
 
@@ -72,10 +72,11 @@ class Density(Described):
     """Media that vary."""
 
     SECTIONS: ClassVar[tuple[str, ...]] = ("media.density",)
-    vdb: File | None = key("file")
+    vdb: FileOrSequence | None = key("file or sequence")
     """A grid of numbers, interpolated linearly. Fog volumes in files of OpenVDB 3 and later, or of
     NanoVDB (`cloud.nvdb`, version 32 of its format, any compression, also quantized values); what
-    is not active is 0. Range: OpenVDB, NanoVDB. Default: none."""
+    is not active is 0. With `#` in its name, as in `fire.####.vdb`, a file for each frame. Range:
+    OpenVDB, NanoVDB. Default: none."""
     grid: str = key("text", "density")
     """Which grid of the vdb."""
     tint: str | None = key("text")

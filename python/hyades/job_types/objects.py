@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Any, ClassVar, Literal
 
 from ..described import Described, key
-from ..values import ColorInput, File, GroupName, MaterialName, MediumName, MeshFile, Number, TextureInput, Vector
+from ..values import ColorInput, File, FileOrSequence, GroupName, MaterialName, MediumName, Number, TextureInput, Vector
 from .transforms import Step
 from .materials import Material
 
@@ -199,9 +199,9 @@ class Mesh(Object):
 
     TYPE: ClassVar[str] = "mesh"
     SECTIONS: ClassVar[tuple[str, ...]] = ("objects.mesh", "objects", "objects.shapes", "objects.bodies")
-    mesh: MeshFile = key("mesh file", required=True)
-    """Triangles; with `#` in its name, as in `walk.####.ply`, a file for each frame: see Mesh.
-    Range: OBJ, PLY. Default: none."""
+    mesh: FileOrSequence = key("file or sequence", required=True)
+    """Triangles; with `#` in its name, as in `walk.####.ply`, a file for each frame. Range: OBJ,
+    PLY. Default: none."""
     emit: Emit | None = key("map")
     """Makes it a lamp. Default: none."""
     normals: Literal["file", "flat", "smooth"] = key(

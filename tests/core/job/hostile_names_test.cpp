@@ -236,7 +236,7 @@ TEST(HostileJob, ManySequencesOfTheSameFiles) {
   parse_job(text, "job.yaml", files, diagnostics);
   ASSERT_FALSE(diagnostics.empty());
   EXPECT_EQ(diagnostics.list().front().to_string(),
-            "job.yaml:1004:17: mesh of object 'o1000': the job's sequences of meshes have more "
+            "job.yaml:1004:17: mesh of object 'o1000': the job's sequences of files have more "
             "than 1,000,000 files");
   EXPECT_EQ(files.opened.size(), 1001U);
 }

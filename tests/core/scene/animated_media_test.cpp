@@ -1,6 +1,10 @@
 #include <gtest/gtest.h>
 
+#include <memory>
+#include <string>
+
 #include "core/job/parse.h"
+#include "core/media/write_vdb.h"
 #include "core/scene/build_scene.h"
 #include "core/scene/volume_makers.h"
 #include "tests/core/job/test_assets.h"
@@ -55,6 +59,44 @@ TEST_F(AnimatedMedia, ShellsGrow) {
           << frame << ' ' << radius;
     }
   }
+}
+
+TEST_F(AnimatedMedia, FilesOfFramesAreTheirsAndLeaveNothingBehind) {
+  for (int frame = 1; frame <= 10; ++frame) {
+    VdbBox box;
+    box.name = "density";
+    box.size = Vec3i(4);
+    box.values.assign(64, static_cast<float>(frame));
+    const auto bytes = write_vdb({box});
+    ASSERT_TRUE(bytes) << bytes.error().message;
+    const std::string name = "fire." + std::to_string(1000 + frame).substr(1) + ".vdb";
+    assets_.add(name, std::string(bytes->chars(), bytes->size()));
+  }
+  read("absorption: 1, density: {vdb: fire.###.vdb, place: native}");
+  const auto density = [&](int32_t frame, float radius) {
+    const Bounds body{Vec3(-radius), Vec3(radius)};
+    const auto made = make_volume(job_.media[0], job_.time_of(frame), body, cache_);
+    EXPECT_TRUE(made) << made.error().message;
+    return made->volume->density;
+  };
+  auto third = density(3, 2.0F);
+  EXPECT_EQ(third->at(Vec3(1.5F)), 3.0F);
+  EXPECT_EQ(density(3, 1.0F), third) << "bodies of a frame share its file";
+  EXPECT_EQ(density(10, 2.0F)->at(Vec3(1.5F)), 10.0F);
+  const std::weak_ptr<const DensityField> gone = third;
+  third.reset();
+  EXPECT_TRUE(gone.expired());
+}
+
+TEST_F(AnimatedMedia, FilesOfFramesThatAreMissingAreNamed) {
+  assets_.add("fire.1.vdb", "");
+  Diagnostics diagnostics;
+  parse_job(
+      "hyades: 1\nframes: 1-10\nmedia: {m: {absorption: 1, density: {vdb: fire.#.vdb}}}\n"
+      "objects: {ball: {shape: sphere, interior: m}}\n",
+      "job.yaml", assets_, diagnostics);
+  EXPECT_NE(diagnostics.to_string().find("frame 2: fire.2.vdb: no such file"), std::string::npos)
+      << diagnostics.to_string();
 }
 
 TEST_F(AnimatedMedia, ShellsThatTurnInsideOutAreRefused) {

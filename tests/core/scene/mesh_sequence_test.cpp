@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "core/job/mesh_files.h"
+#include "core/job/frame_files.h"
 #include "core/job/parse.h"
 #include "core/job/render_key.h"
 #include "core/scene/build_scene.h"
@@ -189,12 +189,12 @@ TEST_F(MeshSequences, KeysFollowTheFilesThatAFrameLooksAt) {
 }
 
 TEST(MeshFiles, KnowTheirNames) {
-  EXPECT_TRUE(is_mesh_sequence("a.#.ply"));
-  EXPECT_FALSE(is_mesh_sequence("a.1.ply"));
+  EXPECT_TRUE(is_file_sequence("a.#.ply"));
+  EXPECT_FALSE(is_file_sequence("a.1.ply"));
   JobTime time;
   time.frame = 12.0;
-  EXPECT_EQ(mesh_file_at("f/a.####.ply", time), "f/a.0012.ply");
-  EXPECT_EQ(mesh_file_at("a.ply", time), "a.ply");
+  EXPECT_EQ(frame_file_at("f/a.####.ply", time), "f/a.0012.ply");
+  EXPECT_EQ(frame_file_at("a.ply", time), "a.ply");
   Job job;
   job.frames.first = 8;
   job.frames.last = 10;

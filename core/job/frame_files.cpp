@@ -1,4 +1,4 @@
-#include "core/job/mesh_files.h"
+#include "core/job/frame_files.h"
 
 #include <cmath>
 #include <cstddef>
@@ -18,10 +18,10 @@ constexpr uint64_t kMostSequenceFiles = 1'000'000;
 
 }  // namespace
 
-bool is_mesh_sequence(const std::string& file) { return file.find('#') != std::string::npos; }
+bool is_file_sequence(const std::string& file) { return file.find('#') != std::string::npos; }
 
-std::string mesh_file_at(const std::string& file, const JobTime& time) {
-  return is_mesh_sequence(file) ? output_path(file, static_cast<int32_t>(std::floor(time.frame)))
+std::string frame_file_at(const std::string& file, const JobTime& time) {
+  return is_file_sequence(file) ? output_path(file, static_cast<int32_t>(std::floor(time.frame)))
                                 : file;
 }
 
@@ -44,13 +44,13 @@ std::set<std::string> sequence_files(const Job& job, const std::set<std::string>
   return files;
 }
 
-MeshSequenceOpener::MeshSequenceOpener(const Job& job, AssetResolver& assets)
+FileSequenceOpener::FileSequenceOpener(const Job& job, AssetResolver& assets)
     : frames_(job.frames), assets_(assets), ahead_(looks_at_next_frame(job)) {}
 
-Status MeshSequenceOpener::open(const std::string& pattern) {
+Status FileSequenceOpener::open(const std::string& pattern) {
   for (int64_t at = frames_.first; at <= frames_.last; at += frames_.step) {
     if (++looked_for_ > kMostSequenceFiles) {
-      return Error{"the job's sequences of meshes have more than " +
+      return Error{"the job's sequences of files have more than " +
                    format_count(kMostSequenceFiles) + " files"};
     }
     const auto frame = static_cast<int32_t>(at);
@@ -63,7 +63,7 @@ Status MeshSequenceOpener::open(const std::string& pattern) {
   return {};
 }
 
-Status MeshSequenceOpener::open_at(int32_t frame, std::string file) {
+Status FileSequenceOpener::open_at(int32_t frame, std::string file) {
   if (opened_.contains(file)) return {};
   if (const auto bytes = assets_.open(file); !bytes) {
     return bytes.error().in("frame " + std::to_string(frame));

@@ -10,14 +10,14 @@
 
 namespace hyades::core {
 
-/// Whether a mesh has a file for each frame: a name with the frame's number in place of each run of
-/// #, as outputs have (output_path).
-bool is_mesh_sequence(const std::string& file);
+/// Whether a name means a file for each frame: it has the frame's number in place of each run of #,
+/// as outputs have (output_path).
+bool is_file_sequence(const std::string& file);
 
-/// The file of a mesh at `time`, in whose frame it lies; `file` itself where there is only one.
-std::string mesh_file_at(const std::string& file, const JobTime& time);
+/// The file at `time`, in whose frame it lies; `file` itself where there is only one.
+std::string frame_file_at(const std::string& file, const JobTime& time);
 
-/// Whether frames of the job look at the meshes of the frame after them: for what happens while the
+/// Whether frames of the job look at the files of the frame after them: for what happens while the
 /// shutter is open, or for the motion layer.
 bool looks_at_next_frame(const Job& job);
 
@@ -26,12 +26,12 @@ std::set<std::string> sequence_files(const Job& job, const std::set<std::string>
 
 /// Opens the files of a job's sequences, so that whoever records what a job opens knows them. Each
 /// is opened once, however many sequences it belongs to.
-class MeshSequenceOpener {
+class FileSequenceOpener {
  public:
-  MeshSequenceOpener(const Job& job, AssetResolver& assets);
+  FileSequenceOpener(const Job& job, AssetResolver& assets);
 
   /// The files of `pattern` that the job's frames look at. The one after a frame may be missing, if
-  /// it is no frame of the job: the mesh then stands still. Error: the first file that cannot be
+  /// it is no frame of the job: a mesh then stands still. Error: the first file that cannot be
   /// opened, with its frame; or all sequences together have more than a million files.
   Status open(const std::string& pattern);
 
