@@ -19,11 +19,13 @@ namespace hyades::core {
 struct BumpDesc {
   std::string texture;
   Animated<float> height{0.01F};  ///< length that the texture's value 1 stands for
+  ScalarInput strength{Animated<float>(1.0F), {}};
 
   template <class Self, class Visitor>
   static void fields(Self& self, Visitor& visit) {
     visit.texture("texture", self.texture);
     visit.animated("height", self.height, kAnyNumber.in("length"));
+    visit.scalar_input("strength", self.strength, {0.0, 100.0});
   }
 };
 

@@ -80,8 +80,10 @@ MaterialPtr make_black();
 /// `base`, of which only the share `opacity` (0..1) is there.
 MaterialPtr make_cutout(MaterialPtr base, const ScalarParam& opacity);
 
-/// `base` with its shading normal turned by the gradient of `height` [length] times `scale`.
-MaterialPtr make_bump(MaterialPtr base, TexturePtr height, float scale);
+/// `base` with its shading normal turned by the gradient of `height` [length] times `scale`, all of
+/// the way where `strength` is 1, not at all where it is 0.
+MaterialPtr make_bump(MaterialPtr base, TexturePtr height, float scale,
+                      const ScalarParam& strength = {1.0F, nullptr});
 
 /// `base` with its shading normal turned by a map in tangent space: `normals` holds x, y and z of
 /// the normal as (1 + n) / 2, x along the tangent (of growing u), y up (of growing v) as OpenGL has

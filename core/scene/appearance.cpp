@@ -45,7 +45,10 @@ Result<MaterialPtr> Appearance::material(const std::string& name) {
   if (desc->bump) {
     auto height = texture(desc->bump->texture);
     if (!height) return height.error().in("material '" + name + "'");
-    result = make_bump(result, *height, desc->bump->height.at(time_) * job_.units);
+    auto strength = scalar(desc->bump->strength);
+    if (!strength) return strength.error().in("material '" + name + "'");
+    const float scale = desc->bump->height.at(time_) * job_.units;
+    result = make_bump(result, *height, scale, *strength);
   }
   if (desc->normal_map) {
     auto normals = texture(desc->normal_map->texture);

@@ -18,6 +18,9 @@ class Bump(Described):
     """The height. Required."""
     height: Number = key("number, animated", 0.01)
     """How high the texture's value 1 is; negative turns hills into dents. Unit: length."""
+    strength: NumberInput = key("number or texture", 1, low=0, high=100)
+    """How much of the way the normal turns: mixes the smooth normal (0) and the wrinkled one (1).
+    Unlike less height it leaves steep slopes their shape. Range: 0 to 100."""
 
 
 @dataclass(kw_only=True, eq=False, repr=False)

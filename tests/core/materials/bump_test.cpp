@@ -9,8 +9,10 @@
 namespace hyades::core {
 namespace {
 
-Vec3 bumped_normal(const SurfacePoint& point, const TexturePtr& height, float scale = 1.0F) {
-  const MaterialPtr material = make_bump(make_lambert(color_of(Rgb(0.5F))), height, scale);
+Vec3 bumped_normal(const SurfacePoint& point, const TexturePtr& height, float scale = 1.0F,
+                   float strength = 1.0F) {
+  const MaterialPtr material =
+      make_bump(make_lambert(color_of(Rgb(0.5F))), height, scale, number(strength));
   BsdfArena arena;
   return ShadedSurface(point, *material, arena).frame().n;
 }
@@ -38,6 +40,16 @@ TEST(Bump, NormalLeansAwayFromRisingHeight) {
   const Vec3 n = bumped_normal(SurfacePoint(), object_slope({0.5F, 0.0F, 0.0F}));
   const Vec3 expected = glm::normalize(Vec3(-0.5F, 0.0F, 1.0F));
   EXPECT_LT(glm::distance(n, expected), 1e-6F);
+}
+
+TEST(Bump, StrengthMixesTheNormals) {
+  const TexturePtr steep = object_slope({2.0F, 0.0F, 0.0F});
+  const Vec3 whole = glm::normalize(Vec3(-2.0F, 0.0F, 1.0F));
+  for (const float strength : {0.0F, 0.25F, 0.5F, 1.0F, 1.5F}) {
+    const Vec3 expected = glm::normalize(strength * whole + (1.0F - strength) * Vec3(0, 0, 1));
+    const Vec3 n = bumped_normal(SurfacePoint(), steep, 1.0F, strength);
+    EXPECT_LT(glm::distance(n, expected), 1e-6F) << strength;
+  }
 }
 
 // Exact: with tangents dp + dh n the normal is n - grad h, grad h taken along the surface.

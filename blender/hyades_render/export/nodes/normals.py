@@ -33,10 +33,12 @@ def _taken(translator: Translator, found: Output, keys: dict[str, Any]) -> Input
     if node.type == "BUMP" and "bump" not in keys:
         height = translator.value(found.input("Height"))
         if values.is_texture(height):
-            strength = values.number(translator.constant(found.input("Strength"), 1.0))
             distance = values.number(translator.constant(found.input("Distance"), 1.0))
             sign = -1.0 if node.invert else 1.0
-            keys["bump"] = materials.Bump(texture=height, height=sign * max(strength, 0.0) * distance)
+            keys["bump"] = materials.Bump(texture=height, height=sign * distance)
+            strength = translator.number(found.input("Strength"), 1.0)
+            if not values.is_constant(strength, 1):
+                keys["bump"].strength = values.held(strength, 0.0, 100.0)
         return found.input("Normal")
     if node.type == "NORMAL_MAP" and "normal_map" not in keys:
         if node.space != "TANGENT":
