@@ -103,6 +103,7 @@ struct PrincipledDesc {
   ScalarInput sheen_roughness{Animated<float>(0.5F), {}};
   bool thin_walled = false;
   bool multiple_scattering = true;  ///< of metal and glass: give back what facets shadow
+  bool scale_radiance = true;       ///< by the square of the index, where glass refracts it
   ScalarInput diffuse_transmission{Animated<float>(0.0F), {}};
   ColorInput emission_color{Animated<Rgb>(Rgb(1.0F)), {}};
   Animated<float> emission_strength{0.0F};
@@ -132,6 +133,7 @@ struct PrincipledDesc {
     visit.color_input("emission_color", self.emission_color, kNotNegative);
     visit.animated("emission_strength", self.emission_strength, kNotNegative.in("W/(m² sr)"));
     visit.flag("multiple_scattering", self.multiple_scattering);
+    visit.flag("scale_radiance", self.scale_radiance);
   }
 
   /// Whether it may shine.
@@ -144,6 +146,7 @@ struct PrincipledDesc {
 struct DielectricDesc {
   static constexpr MaterialTraits kTraits{.type = "dielectric", .clear = true};
   bool multiple_scattering = true;  ///< give back what facets shadow
+  bool scale_radiance = true;       ///< by the square of the index, where it is refracted
   ScalarInput roughness{Animated<float>(0.0F), {}};
   Animated<float> ior{1.5F};
   Animated<Rgb> transmission{Rgb(1.0F)};  ///< tint per crossing
@@ -153,6 +156,7 @@ struct DielectricDesc {
   template <class Self, class Visitor>
   static void fields(Self& self, Visitor& visit) {
     visit.flag("multiple_scattering", self.multiple_scattering);
+    visit.flag("scale_radiance", self.scale_radiance);
     visit.scalar_input("roughness", self.roughness, kUnitInterval);
     visit.animated("ior", self.ior, {0.01, 100.0});
     visit.color("transmission", self.transmission, kUnitInterval);

@@ -17,10 +17,14 @@ namespace {
 /// Refraction squeezes a beam's solid angle: radiance over the squared index is what stays constant
 /// along a ray (Veach 1997, section 5.2). Radiance that arrives along wi in index eta_i leaves
 /// along wo in eta_o as (1 - F) (eta_o / eta_i)^2 L; importance is carried without that factor.
+/// Most renderers leave it out; `scale_radiance` off does, too.
 class DielectricBsdf final : public DeltaBsdf {
  public:
-  DielectricBsdf(float ior, const Rgb& transmission, const Rgb& reflection)
-      : ior_(ior), transmission_(transmission), reflection_(reflection) {}
+  DielectricBsdf(float ior, const Rgb& transmission, const Rgb& reflection, bool scale_radiance)
+      : ior_(ior),
+        transmission_(transmission),
+        reflection_(reflection),
+        scale_radiance_(scale_radiance) {}
 
   std::optional<BsdfSample> sample(const Vec3& wo, float lobe, const Vec2&,
                                    TransportMode mode) const override {
@@ -39,7 +43,7 @@ class DielectricBsdf final : public DeltaBsdf {
     const float p_transmit = 1.0F - p_reflect;
     if (!(p_transmit > 0.0F)) return std::nullopt;
     Rgb weight = transmission_ * ((1.0F - reflectance) / p_transmit);
-    if (mode == TransportMode::radiance) weight *= 1.0F / (eta * eta);
+    if (is_scaled(mode, scale_radiance_)) weight *= 1.0F / (eta * eta);
     return BsdfSample{.weight = weight,
                       .pdf = p_transmit,
                       .wi = {-wo.x / eta, -wo.y / eta, wo.z < 0.0F ? cos_t : -cos_t},
@@ -58,6 +62,7 @@ class DielectricBsdf final : public DeltaBsdf {
   float ior_;
   Rgb transmission_;
   Rgb reflection_;
+  bool scale_radiance_;
 };
 
 /// Light goes straight on: an interface between equal indices.
@@ -83,7 +88,8 @@ class Dielectric final : public Material {
       : ior_(ior), transmission_(unit_clamp(transmission)), reflection_(unit_clamp(reflection)) {}
 
   const Bsdf* bsdf_at(const SurfacePoint& point, Frame&, BsdfArena& arena) const override {
-    return smooth_dielectric_bsdf(ior_ / point.outside_index, transmission_, reflection_, arena);
+    return smooth_dielectric_bsdf(ior_ / point.outside_index, transmission_, reflection_, true,
+                                  arena);
   }
   bool leads_inside() const override { return true; }
   float index() const override { return ior_; }
@@ -97,9 +103,9 @@ class Dielectric final : public Material {
 }  // namespace
 
 const Bsdf* smooth_dielectric_bsdf(float ior, const Rgb& transmission, const Rgb& reflection,
-                                   BsdfArena& arena) {
+                                   bool scale_radiance, BsdfArena& arena) {
   if (ior == 1.0F) return arena.make<MatchedBsdf>(transmission);
-  return arena.make<DielectricBsdf>(ior, transmission, reflection);
+  return arena.make<DielectricBsdf>(ior, transmission, reflection, scale_radiance);
 }
 
 MaterialPtr make_dielectric(float ior, const Rgb& transmission, const Rgb& reflection) {

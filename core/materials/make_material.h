@@ -38,9 +38,12 @@ enum class FacetScattering {
 };
 
 /// A dielectric with facets of GGX, alpha = roughness^2 (roughness 0: make_dielectric).
+/// `scale_radiance`: refracted radiance changes by the square of the index, as physics has it; off:
+/// it does not.
 MaterialPtr make_rough_dielectric(float ior, const Rgb& transmission, const Rgb& reflection,
                                   const ScalarParam& roughness,
-                                  FacetScattering scattering = FacetScattering::single);
+                                  FacetScattering scattering = FacetScattering::single,
+                                  bool scale_radiance = true);
 
 /// A sheet of that glass so thin that light leaves where it entered, all inner bounces summed
 /// (R' = 2R / (1 + R) without absorption). Rough, it blurs alike on both sides, without loss.

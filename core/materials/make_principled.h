@@ -28,6 +28,7 @@ struct PrincipledParams {
   float coat_ior = 1.5F;
   bool thin_walled = false;
   FacetScattering facets = FacetScattering::multiple;  ///< of metal and glass
+  bool scale_radiance = true;  ///< by the square of the index, where glass refracts it
   bool subsurface = false;  ///< light that would be reflected by the matt part goes into the body
 };
 

@@ -111,7 +111,8 @@ class Principled final : public Material {
     if (params_.thin_walled)
       return thin_dielectric_bsdf(eta, parts.alpha, base, parts.facet_tint, arena);
     const Rgb tint = params_.subsurface ? Rgb(1.0F) : square_root(base);
-    return dielectric_bsdf(eta, parts.alpha, tint, parts.facet_tint, params_.facets, arena);
+    return dielectric_bsdf(eta, parts.alpha, tint, parts.facet_tint, params_.facets,
+                           params_.scale_radiance, arena);
   }
 
   PrincipledParams params_;

@@ -19,11 +19,16 @@ namespace {
 /// 2007, "Microfacet Models for Refraction through Rough Surfaces", equations 16, 20 and 21):
 /// smooth facets, GGX distributed, of which one that is visible from wo is drawn; it then reflects
 /// or refracts by its energy. Radiance gains (eta_o / eta_i)^2 in refraction as at a smooth
-/// interface (see dielectric.cpp).
+/// interface, or not (see dielectric.cpp).
 class RoughDielectricBsdf final : public Bsdf {
  public:
-  RoughDielectricBsdf(float ior, float alpha, const Rgb& transmission, const Rgb& reflection)
-      : ior_(ior), facets_{alpha}, transmission_(transmission), reflection_(reflection) {}
+  RoughDielectricBsdf(float ior, float alpha, const Rgb& transmission, const Rgb& reflection,
+                      bool scale_radiance)
+      : ior_(ior),
+        facets_{alpha},
+        transmission_(transmission),
+        reflection_(reflection),
+        scale_radiance_(scale_radiance) {}
 
   Rgb evaluate(const Vec3& wo, const Vec3& wi, TransportMode mode) const override {
     const auto event = find_event(wo, wi);
@@ -31,11 +36,11 @@ class RoughDielectricBsdf final : public Bsdf {
     const float reflectance = event->reflectance;
     if (!event->refraction)
       return reflection_ * (reflectance * facets_.reflect(event->o, event->i));
-    const float radiance = (1.0F - reflectance) * facets_.density(event->m) *
-                           facets_.both_visible(event->o, above(event->i)) * event->o_m *
-                           event->jacobian / (event->o.z * event->eta * event->eta);
+    const float scaled = (1.0F - reflectance) * facets_.density(event->m) *
+                         facets_.both_visible(event->o, above(event->i)) * event->o_m *
+                         event->jacobian / (event->o.z * event->eta * event->eta);
     return transmission_ *
-           (mode == TransportMode::radiance ? radiance : radiance * event->eta * event->eta);
+           (is_scaled(mode, scale_radiance_) ? scaled : scaled * event->eta * event->eta);
   }
 
   float pdf(const Vec3& wo, const Vec3& wi, TransportMode) const override {
@@ -74,7 +79,7 @@ class RoughDielectricBsdf final : public Bsdf {
     s.eta = eta;
     const float seen = facets_.both_visible(o, above(i)) / facets_.visible(o);
     s.weight = transmission_ * ((1.0F - reflectance) / (1.0F - p_reflect) * seen);
-    if (mode == TransportMode::radiance) s.weight *= 1.0F / (eta * eta);
+    if (is_scaled(mode, scale_radiance_)) s.weight *= 1.0F / (eta * eta);
     return s;
   }
 
@@ -142,6 +147,7 @@ class RoughDielectricBsdf final : public Bsdf {
   Ggx facets_;
   Rgb transmission_;
   Rgb reflection_;
+  bool scale_radiance_;
 };
 
 /// A rough dielectric that gives back the light that it loses to second facets. How much of that
@@ -149,8 +155,10 @@ class RoughDielectricBsdf final : public Bsdf {
 /// nothing where little is. Half of the samples of its lobes do each.
 class FullDielectricBsdf final : public Bsdf {
  public:
-  FullDielectricBsdf(float ior, float alpha, const Rgb& transmission, const Rgb& reflection)
-      : single_(ior, alpha, transmission, reflection),
+  FullDielectricBsdf(float ior, float alpha, const Rgb& transmission, const Rgb& reflection,
+                     bool scale_radiance)
+      : single_(ior, alpha, transmission, reflection, scale_radiance),
+        scale_radiance_(scale_radiance),
         lost_(ior, alpha, transmission, reflection),
         ior_(ior),
         brightest_(std::fmax(max_component(transmission), max_component(reflection))) {}
@@ -158,7 +166,7 @@ class FullDielectricBsdf final : public Bsdf {
   Rgb evaluate(const Vec3& wo, const Vec3& wi, TransportMode mode) const override {
     if (wo.z == 0.0F || wi.z == 0.0F) return Rgb(0.0F);
     Rgb lost = lost_.evaluate(wo, wi);
-    if (mode == TransportMode::radiance && !same_side(wo, wi)) {
+    if (is_scaled(mode, scale_radiance_) && !same_side(wo, wi)) {
       const float eta = index_beyond(wo, ior_);
       lost *= 1.0F / (eta * eta);
     }
@@ -223,6 +231,7 @@ class FullDielectricBsdf final : public Bsdf {
   }
 
   RoughDielectricBsdf single_;
+  bool scale_radiance_;
   LostGlassLight lost_;
   float ior_;
   float brightest_;  ///< the most that single scattering keeps of any colour
@@ -231,17 +240,18 @@ class FullDielectricBsdf final : public Bsdf {
 class RoughDielectric final : public Material {
  public:
   RoughDielectric(float ior, const Rgb& transmission, const Rgb& reflection, ScalarParam roughness,
-                  FacetScattering scattering)
+                  FacetScattering scattering, bool scale_radiance)
       : ior_(ior),
         transmission_(unit_clamp(transmission)),
         reflection_(unit_clamp(reflection)),
         roughness_(std::move(roughness)),
-        scattering_(scattering) {}
+        scattering_(scattering),
+        scale_radiance_(scale_radiance) {}
 
   const Bsdf* bsdf_at(const SurfacePoint& point, Frame&, BsdfArena& arena) const override {
     const float roughness = fraction_at(roughness_, point);
     return dielectric_bsdf(ior_ / point.outside_index, roughness * roughness, transmission_,
-                           reflection_, scattering_, arena);
+                           reflection_, scattering_, scale_radiance_, arena);
   }
   bool leads_inside() const override { return true; }
   float index() const override { return ior_; }
@@ -252,22 +262,25 @@ class RoughDielectric final : public Material {
   Rgb reflection_;
   ScalarParam roughness_;
   FacetScattering scattering_;
+  bool scale_radiance_;
 };
 
 }  // namespace
 
 const Bsdf* dielectric_bsdf(float ior, float alpha, const Rgb& transmission, const Rgb& reflection,
-                            FacetScattering scattering, BsdfArena& arena) {
+                            FacetScattering scattering, bool scale_radiance, BsdfArena& arena) {
   if (alpha < Ggx::kLeastAlpha || ior == 1.0F)
-    return smooth_dielectric_bsdf(ior, transmission, reflection, arena);
+    return smooth_dielectric_bsdf(ior, transmission, reflection, scale_radiance, arena);
   if (scattering == FacetScattering::multiple)
-    return arena.make<FullDielectricBsdf>(ior, alpha, transmission, reflection);
-  return arena.make<RoughDielectricBsdf>(ior, alpha, transmission, reflection);
+    return arena.make<FullDielectricBsdf>(ior, alpha, transmission, reflection, scale_radiance);
+  return arena.make<RoughDielectricBsdf>(ior, alpha, transmission, reflection, scale_radiance);
 }
 
 MaterialPtr make_rough_dielectric(float ior, const Rgb& transmission, const Rgb& reflection,
-                                  const ScalarParam& roughness, FacetScattering scattering) {
-  return std::make_shared<RoughDielectric>(ior, transmission, reflection, roughness, scattering);
+                                  const ScalarParam& roughness, FacetScattering scattering,
+                                  bool scale_radiance) {
+  return std::make_shared<RoughDielectric>(ior, transmission, reflection, roughness, scattering,
+                                           scale_radiance);
 }
 
 }  // namespace hyades::core

@@ -32,7 +32,7 @@ Result<MaterialPtr> make(const DielectricDesc& desc, Appearance& looks) {
   const JobTime& time = looks.time();
   return make_rough_dielectric(desc.ior.at(time), desc.transmission.at(time),
                                desc.reflection.at(time), *roughness,
-                               facets_of(desc.multiple_scattering));
+                               facets_of(desc.multiple_scattering), desc.scale_radiance);
 }
 
 Result<MaterialPtr> make(const ThinDielectricDesc& desc, Appearance& looks) {

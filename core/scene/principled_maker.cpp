@@ -42,6 +42,7 @@ Result<MaterialPtr> principled_material(const PrincipledDesc& p, Appearance& loo
   params.coat_ior = p.coat_ior.at(looks.time());
   params.thin_walled = p.thin_walled;
   if (!p.multiple_scattering) params.facets = FacetScattering::single;
+  params.scale_radiance = p.scale_radiance;
   params.subsurface = p.subsurface.has_value();
   return make_principled(params);
 }

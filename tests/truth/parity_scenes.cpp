@@ -161,6 +161,7 @@ camera: {look_from: [0, 1.2, 4], look_at: [0, 0.6, 0], fov: 35}
 materials:
   white: {type: lambert, color: [0.7, 0.6, 0.5]}
   frosted: {type: dielectric, ior: 1.5, roughness: 0.5}
+  resin: {type: dielectric, ior: 1.5, roughness: 0.4, scale_radiance: false}
   mirror: {type: mirror}
   half: {type: mix, first: white, second: mirror, amount: 0.5}
   pane: {type: thin-dielectric, ior: 1.5}
@@ -168,6 +169,8 @@ objects:
   floor: {shape: disk, radius: 2, material: half}
   ball: {shape: sphere, radius: 0.5, at: [-0.6, 0.6, 0], material: frosted}
   plate: {shape: rectangle, size: [1, 1], transform: [{rotate_x: 80}], at: [0.6, 0.6, 0.5], material: pane}
+  bulb: {shape: sphere, radius: 0.2, at: [0, 0.25, 0.7], material: resin}
+  glow: {shape: sphere, radius: 0.1, at: [0, 0.25, 0.7], emit: {radiance: 4}}
   wall: {shape: rectangle, size: [1, 1], transform: [{rotate_x: 90}], at: [0.6, 0.6, -0.5], material: white}
   lamp: {shape: sphere, radius: 0.5, at: [0.5, 2.6, 0.6], emit: {radiance: 8}}
 )",

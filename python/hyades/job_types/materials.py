@@ -141,6 +141,8 @@ class Principled(Material):
     multiple_scattering: bool = key("switch", True)
     """Gives back the light that facets of metal and glass throw onto each other; without it these
     darken where they are rough."""
+    scale_radiance: bool = key("switch", True)
+    """Of glass: see Frosted glass."""
     opacity: NumberInput = key("number or texture", 1, low=0, high=1)
     """How much of it is there: leaves from an image of a leaf, fading smoke. The rest of the light
     passes straight on, to the camera and in shadows, as if nothing were there, and counts no event.
@@ -166,6 +168,10 @@ class Dielectric(Material):
     multiple_scattering: bool = key("switch", True)
     """Gives back the light that facets throw onto each other, nearly diffuse, on both sides (Kulla
     and Conty 2017); without it rough glass darkens."""
+    scale_radiance: bool = key("switch", True)
+    """Light that is refracted into glass of index n is n² times as bright there, and 1/n² when it
+    leaves, as physics has it (Veach 1997, section 5.2). Off: it stays as it is, as in Cycles, which
+    shows where the camera or a lamp is in the glass, or where glass has no other side."""
     roughness: NumberInput = key("number or texture", 0, low=0, high=1)
     """GGX microfacets with alpha = roughness²; 0 is smooth. A pane blurs alike what it reflects and
     what it lets through, and loses nothing. Range: 0 to 1."""

@@ -24,8 +24,7 @@ def smooth_monkey(made, at, turn: float):
     return monkey
 
 
-# The eyes of the one of glass are open.
-@scene(samples=512, block=0.3, complaints=("glass without an inside",))  # the glass, and its caustics
+@scene(samples=512, block=0.3)  # the glass, and its caustics
 def monkeys() -> None:
     # Matt, gold, glass and coated, on a chequered floor, by an area, a point and the sun.
     sized()

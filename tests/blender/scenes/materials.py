@@ -6,7 +6,7 @@ import tempfile
 import bpy
 import numpy
 import vdb_file
-from scene import add, floor, light, link, material, node, primitive, scene, shader_of, sharpen, world
+from scene import add, camera, floor, light, link, material, node, primitive, scene, shader_of, sharpen, world
 
 
 def ball(made, kind: str = "uv_sphere"):
@@ -262,3 +262,23 @@ def in_a_group() -> None:
     link(made, reroute.outputs[0], paint.inputs["Tint"])
     link(made, paint.outputs[0], made.node_tree.nodes["Material Output"].inputs["Surface"])
     ball(made)
+
+
+@scene(samples=128)
+def under_water() -> None:
+    water = material("Water", "ShaderNodeBsdfGlass", Roughness=0.0, IOR=1.33)
+    world((0.4, 0.5, 0.8))
+    primitive("cube", water, scale=(12, 12, 8))
+    primitive("cube", material(Color=(0.7, 0.4, 0.2)), turn=(20, 10, 30))
+    camera((0, -4, 1), (0, 0, 0))
+
+
+@scene(samples=256, block=0.12)  # the light that resin throws onto the floor, and its noise
+def glow_in_resin() -> None:
+    resin = material("Resin", "ShaderNodeBsdfGlass", Roughness=0.0, IOR=1.5)
+    glow = material("Glow", "ShaderNodeEmission", Color=(0.9, 0.5, 0.2), Strength=2.0)
+    floor()
+    world((0.1, 0.1, 0.1))
+    primitive("uv_sphere", resin, at=(0, 0, 1.1), smooth=True, segments=64, ring_count=32)
+    primitive("cube", glow, at=(0, 0, 1.1), scale=(0.4, 0.4, 0.4), turn=(20, 10, 40))
+    camera((0, -5, 2.5), (0, 0, 0.8))

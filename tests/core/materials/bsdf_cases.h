@@ -39,8 +39,9 @@ inline ScalarParam number(float value) { return {value, nullptr}; }
 struct BsdfCase {
   std::string name;
   MaterialPtr material;
-  float ior = 1.0F;        ///< of the side z < 0 over that of z > 0
+  float ior = 1.0F;        ///< of the side z < 0 over that of z > 0; 1 over it if not scaled
   bool reciprocal = true;  ///< false where part of it has another normal than the whole
+  bool scaled = true;      ///< refraction scales radiance as physics has it, not importance
 };
 
 inline void PrintTo(const BsdfCase& c, std::ostream* out) { *out << c.name; }
@@ -204,6 +205,14 @@ inline std::vector<BsdfCase> smooth_cases() {
        make_rough_dielectric(1.33F, {0.9F, 0.5F, 0.2F}, {0.3F, 0.6F, 0.4F}, number(0.9F),
                              FacetScattering::multiple),
        1.33F},
+      {"rough_glass_unscaled",
+       make_rough_dielectric(1.5F, Rgb(1.0F), Rgb(1.0F), number(0.5F), FacetScattering::single,
+                             false),
+       1.0F / 1.5F, true, false},
+      {"rough_glass_full_unscaled",
+       make_rough_dielectric(1.4F, Rgb(1.0F), Rgb(1.0F), number(0.7F), FacetScattering::multiple,
+                             false),
+       1.0F / 1.4F, true, false},
       {"mix_lambert_metal", make_mix(red, metal(0.4F), number(0.3F))},
       {"mix_lambert_glass", make_mix(red, glass, number(0.4F)), 1.5F},
       {"mix_lambert_null", make_mix(make_null(), red, number(0.7F))},

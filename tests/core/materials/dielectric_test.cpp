@@ -99,6 +99,25 @@ TEST(Dielectric, DirectionsObeySnell) {
   }
 }
 
+// As physics has it radiance changes by 1 / eta^2, without that importance does: their ratio, which
+// paths from both ends share, stays.
+TEST(Dielectric, RadianceMayKeepItsValue) {
+  const BsdfUnderTest scaled(make_rough_dielectric(1.5F, Rgb(1.0F), Rgb(1.0F), number(0.0F)));
+  const BsdfUnderTest unscaled(make_rough_dielectric(1.5F, Rgb(1.0F), Rgb(1.0F), number(0.0F),
+                                                     FacetScattering::single, false));
+  for (const float z : kHeights) {
+    for (const TransportMode mode : kBothModes) {
+      const bool is_radiance = mode == TransportMode::radiance;
+      const TransportMode other = is_radiance ? TransportMode::importance : TransportMode::radiance;
+      const Lobes with = lobes_of(*scaled.get(), at_height(z), mode);
+      const Lobes without = lobes_of(*unscaled.get(), at_height(z), mode);
+      const Lobes as = lobes_of(*scaled.get(), at_height(z), other);
+      EXPECT_EQ(energy(without.reflected), energy(with.reflected));
+      EXPECT_EQ(energy(without.refracted), energy(as.refracted)) << z;
+    }
+  }
+}
+
 TEST(Dielectric, EqualIndicesPassLightUnchanged) {
   const BsdfUnderTest air(make_dielectric(1.0F, Rgb(1.0F), Rgb(1.0F)));
   for (const float z : kHeights) {

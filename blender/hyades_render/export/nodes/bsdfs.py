@@ -78,6 +78,7 @@ def dielectric(translator: Translator, output: Output, reflection: Any) -> mater
         transmission=color,
         reflection=color if reflection is None else reflection,
         multiple_scattering=keeps_light(output),
+        scale_radiance=False,
         **normal_keys(translator, output),
     )
     roughness = _roughness(translator, output)

@@ -46,6 +46,8 @@ def principled(translator: Translator, output: Output) -> Closure:
         emission = values.product(emission, left_of_emission(translator, output, made))
     if not keeps_light(output) and not (values.is_constant(made.metallic, 0) and values.is_constant(made.transmission, 0)):
         made.multiple_scattering = False
+    if not values.is_constant(made.transmission, 0):
+        made.scale_radiance = False
     tell_of_inputs(translator, output, made)
     alpha = held(translator.number(output.input("Alpha"), 1.0))
     return Closure(made, values.product(emission, alpha), alpha)
@@ -64,9 +66,16 @@ def _keys(translator: Translator, output: Output) -> dict[str, Any]:
     return keys
 
 
+def _ior(translator: Translator, output: Output) -> float:
+    ior = float(values.number(translator.constant(output.input("IOR"), 1.5)))
+    if ior < 1:
+        translator.complain(output.node, "'IOR' is held at 1: for bubbles take a Glass BSDF")
+    return held(ior, 1.0, 100.0)
+
+
 def _until_3_6(translator: Translator, output: Output, made: materials.Principled) -> None:
     """Specular is 0.08 of light at most, whatever the IOR; tints go towards the base's hue; a coat counts a quarter."""
-    ior = held(values.number(translator.constant(output.input("IOR"), 1.45)), 1.0, 100.0)
+    ior = _ior(translator, output)
     specular = translator.number(output.input("Specular"), 0.5)
     if values.is_constant(made.transmission, 0):
         if values.is_texture(specular):
@@ -123,7 +132,7 @@ def _towards(translator: Translator, output: Output, made: materials.Principled,
 
 
 def _since_4_0(translator: Translator, output: Output, made: materials.Principled) -> None:
-    made.ior = held(values.number(translator.constant(output.input("IOR"), 1.5)), 1.0, 100.0)
+    made.ior = _ior(translator, output)
     specular = held(translator.number(output.input("Specular IOR Level"), 0.5))
     if not values.is_constant(specular, 0.5):
         made.specular = specular
