@@ -11,53 +11,17 @@ import bpy
 import hyades
 from addon import AddOnTest
 from exporting import ExportTest
-from told_surfaces import Surfaces, Values  # noqa: F401  (tests of this run)
+from told_copies import Copies  # noqa: F401  (tests of this run)
+from told_images import Images  # noqa: F401
+from told_motion import Moving  # noqa: F401
+from told_surfaces import Surfaces, Values  # noqa: F401
 from told_volumes import Volumes  # noqa: F401
 
-from hyades_render import animation, complaints, moving_copies, panels, preferences
-from hyades_render.export import objects
-from hyades_render.export.nodes import graph
+from hyades_render import animation, complaints, panels, preferences
 
 
-class Copies(ExportTest):
-    def test_objects_of_one_mesh_keep_their_materials(self) -> None:
-        mesh = bpy.data.objects["Cube"].data
-        things = []
-        names = [f"Hue {number}" for number in range(6)]
-        for number, name in enumerate(names):
-            thing = bpy.data.objects.new(name, mesh)
-            thing.material_slots[0].link = "OBJECT"
-            thing.material_slots[0].material = self.material(name, color=(number / 6, 0, 0))[0]
-            things.append(thing)
-        self.collection(*things, copies=3)
-        job, _ = self.export()
-        for name in names:
-            (body,) = job.objects[name].instance.objects.values()
-            self.assertIs(body.material, job.materials[name])
-            self.assertEqual(len(job.objects[name].places.matrices), 3)
-
-    def test_copies_look_as_their_place_has_them(self) -> None:
-        made, shader = self.material("Place")
-        info = made.node_tree.nodes.new("ShaderNodeObjectInfo")
-        made.node_tree.links.new(info.outputs["Location"], shader.inputs[0])
-        thing = bpy.data.objects.new("Thing", bpy.data.objects["Cube"].data.copy())
-        thing.data.materials[0] = made
-        self.collection(thing, copies=4)
-        self.scene.hyades.bake_size = 64
-        job, said = self.export()
-        copies = [body for name, body in job.objects.items() if name.startswith("Thing")]
-        self.assertEqual([round(float(body.material.color.file.max()), 3) for body in copies], [0, 2, 4, 6])
-        self.assertEqual(said, "")
-        with mock.patch.object(objects, "_MOST_OWN", 2):
-            job, said = self.export()
-        self.assertEqual(len(job.objects["Thing"].places.matrices), 3)
-        self.assertIn("object 'Thing': its looks depend on where it is, or on the object: copies beyond 2", said)
-
-    def test_a_view_layer_may_override_all_materials(self) -> None:
-        bpy.data.objects["Cube"].data.materials.clear()
-        bpy.context.view_layer.material_override = self.material("Clay", color=(0.25, 0.5, 0.75))[0]
-        job, _ = self.export()
-        self.assertEqual(job.objects["Cube"].material.color, [0.25, 0.5, 0.75])
+class NotThere(ExportTest):
+    """What jobs do not have is told by name."""
 
     def test_the_panel_shows_the_filter_that_is_used(self) -> None:
         shown = []
@@ -67,67 +31,6 @@ class Copies(ExportTest):
         (owner,) = [owner for owner, name in shown if name == "filter_width"]
         owner.filter_width = 3.0
         self.assertEqual(self.export()[0].film.filter.radius, 1.5)
-
-    def test_images_without_alpha_are_there_everywhere(self) -> None:
-        made, shader = self.material("Leaf", "ShaderNodeBsdfTransparent")
-        texture = made.node_tree.nodes.new("ShaderNodeTexImage")
-        made.node_tree.links.new(texture.outputs["Alpha"], shader.inputs[0])
-        texture.image = bpy.data.images.new("Leaf", 4, 4, alpha=True)
-        bpy.data.objects["Cube"].data.materials[0] = made
-        for mode, kind in (("STRAIGHT", hyades.textures.Texture), ("NONE", float)):
-            texture.image.alpha_mode = mode
-            self.assertIsInstance(self.export()[0].objects["Cube"].material.opacity, kind)
-
-    def test_angles_count_as_on_average(self) -> None:
-        made, shader = self.material("Pearl")
-        tree = made.node_tree
-        mix = tree.nodes.new("ShaderNodeMixRGB")
-        mix.inputs["Color1"].default_value, mix.inputs["Color2"].default_value = (0, 0, 0, 1), (1, 1, 1, 1)
-        tree.links.new(mix.outputs[0], shader.inputs[0])
-        bpy.data.objects["Cube"].data.materials[0] = made
-        for kind, socket, expected in (
-            ("ShaderNodeFresnel", "Fac", 0.0796),
-            ("ShaderNodeLayerWeight", "Fresnel", 0.1534),
-            ("ShaderNodeLayerWeight", "Facing", 1 / 3),
-        ):
-            node = tree.nodes.new(kind)
-            if kind == "ShaderNodeFresnel":
-                node.inputs["IOR"].default_value = 1.45  # Blender 4.3 has another default
-            tree.links.new(node.outputs[socket], mix.inputs["Fac"])
-            job, said = self.export()
-            self.assertAlmostEqual(job.objects["Cube"].material.color[0], expected, places=3)
-            self.assertIn("what depends on the angle of view is taken as it is on average", said)
-
-    def test_mixtures_beyond_both_are_computed(self) -> None:
-        made, shader = self.material("Beyond")
-        tree = made.node_tree
-        mix, checker = tree.nodes.new("ShaderNodeMix"), tree.nodes.new("ShaderNodeTexChecker")
-        mix.data_type, mix.clamp_factor, mix.inputs[0].default_value = "RGBA", False, 1.8
-        mix.inputs[6].default_value = (0.1, 0.1, 0.1, 1)
-        checker.inputs[1].default_value = checker.inputs[2].default_value = (0.4, 0.4, 0.4, 1)
-        tree.links.new(checker.outputs[0], mix.inputs[7])
-        tree.links.new(mix.outputs[2], shader.inputs[0])
-        bpy.data.objects["Cube"].data.materials[0] = made
-        self.scene.hyades.bake_size = 64
-        picture = self.export()[0].objects["Cube"].material.color.file
-        self.assertAlmostEqual(float(picture.max()), 0.1 + 1.8 * 0.3, places=4)
-
-    def test_colors_of_images_hold_their_alpha_while_nobody_asks_for_it(self) -> None:
-        made, shader = self.material("Leaf")
-        texture = made.node_tree.nodes.new("ShaderNodeTexImage")
-        made.node_tree.links.new(texture.outputs["Color"], shader.inputs[0])
-        image = texture.image = bpy.data.images.new("Leaf", 2, 1, alpha=True)
-        bpy.data.objects["Cube"].data.materials[0] = made
-
-        def darkest() -> float:
-            return float(self.export()[0].objects["Cube"].material.color.file[..., 0].min())
-
-        for alpha, mode, light in ((1, "STRAIGHT", 1), (0.5, "STRAIGHT", 0.21404), (0.5, "CHANNEL_PACKED", 1)):
-            image.pixels, image.alpha_mode = [1, 1, 1, 1, 1, 1, 1, alpha], mode
-            self.assertAlmostEqual(darkest(), light, delta=0.003)  # of bytes
-        image.alpha_mode = "STRAIGHT"
-        made.node_tree.links.new(texture.outputs["Alpha"], shader.inputs["Roughness"])
-        self.assertEqual(darkest(), 1)
 
     def test_what_a_job_has_not_is_told(self) -> None:
         made, shader = self.material("Bright")
@@ -140,120 +43,6 @@ class Copies(ExportTest):
         self.assertIn("'Color' is held at 1", said)
         self.assertIn("camera 'Camera': its scale mirrors the picture", said)
         self.assertIn("object 'Smoke': only volumes of files are supported", said)
-        self.assertNotIn("without an inside", said)
-        bpy.data.objects["Cube"].data.materials[0] = self.material("Glass", "ShaderNodeBsdfGlass")[0]
-        self.assertNotIn("without an inside", self.export()[1])
-        bpy.ops.mesh.primitive_plane_add()
-        bpy.context.object.data.materials.append(bpy.data.materials["Glass"])
-        self.assertIn("object 'Plane': glass without an inside", self.export()[1])
-
-
-class Moving(ExportTest):
-    """Several frames as one job."""
-
-    def film(self, last: int = 3) -> tuple[hyades.Job, str]:
-        exported = animation.job_of(self.scene, frames=range(1, last + 1), name="film")
-        return exported.job, "\n".join(map(str, exported.complaints))
-
-    def test_copies_that_move_have_keys(self) -> None:
-        thing = bpy.data.objects.new("Thing", bpy.data.objects["Cube"].data)
-        self.collection(thing, copies=4)
-        for name, there in (("Copy 1", (True, True)), ("Copy 2", (False, True))):
-            copy = bpy.data.objects[name]
-            for frame, shown in zip((1, 3), there):
-                copy.location.z, copy.hide_render = frame, not shown
-                copy.keyframe_insert("location", frame=frame)
-                copy.keyframe_insert("hide_render", frame=frame)
-        job, said = self.film()
-        self.assertEqual(said, "")
-        self.assertEqual(sorted(job.objects["Thing"].places.matrices[:, 0, 3]), [0, 6])
-        moved = {name: body for name, body in job.objects.items() if name.startswith("Thing copy")}
-        self.assertEqual(len(moved), 2)
-        first, late = moved.values()
-        move = first.transform[-1].translate.keys
-        self.assertEqual([round(move[frame][1], 3) for frame in (1, 2, 3)], [1, 2, 3])
-        self.assertEqual(late.transform[0].scale.keys, {1: 1e-6, 2: 1e-6, 3: 1.0})
-        with mock.patch.object(moving_copies, "_MOST", 1), self.assertRaisesRegex(ValueError, "'Thing', of which 2 copies"):
-            self.film()
-
-    def test_values_that_begin_at_nothing_have_keys(self) -> None:
-        cube = bpy.data.objects["Cube"]
-        shining = self.material("Shining", "ShaderNodeEmission")[0]
-        strength = shining.node_tree.nodes["Emission"].inputs["Strength"]
-        mixed, second = self.material("Mixed")
-        tree = mixed.node_tree
-        mix, first = tree.nodes.new("ShaderNodeMixShader"), tree.nodes.new("ShaderNodeBsdfTransparent")
-        ends = (mix.inputs[1], mix.inputs[2], tree.nodes["Material Output"].inputs["Surface"])
-        for output, end in zip((first, second, mix), ends):
-            tree.links.new(output.outputs[0], end)
-        other = bpy.data.objects.new("Other", cube.data.copy())
-        self.scene.collection.objects.link(other)
-        cube.data.materials[0], other.data.materials[0] = shining, mixed
-        for socket in (strength, mix.inputs["Fac"]):
-            for frame, value in ((1, 0.0), (3, 1.0)):
-                socket.default_value = value
-                socket.keyframe_insert("default_value", frame=frame)
-        job, said = self.film()
-        self.assertEqual(said, "")
-        self.assertEqual(job.objects["Cube"].emit.radiance.keys, {1: 0.0, 2: 1.0, 3: 1.0})
-        half = job.objects["Cube"].emit.color.keys[2][0]
-        self.assertTrue(0 < half < job.objects["Cube"].emit.color.keys[3][0])
-        opacity = job.objects["Other"].material.opacity.keys
-        self.assertEqual((opacity[1], round(opacity[2], 3), opacity[3]), (0, 0.5, 1))
-        self.assertEqual(job.objects["Other"].material.color, [0.5, 0.5, 0.5])
-
-    def test_what_a_shutter_does_not_blur_is_as_at_its_frame(self) -> None:
-        self.scene.render.use_motion_blur, self.scene.render.motion_blur_shutter = True, 0.5
-        lamp, cube = bpy.data.lights["Light"], bpy.data.objects["Cube"]
-        for frame in (1, 2, 3):
-            lamp.energy, cube.hide_render, cube.location.x = 100 * frame, frame == 3, frame
-            lamp.keyframe_insert("energy", frame=frame)
-            cube.keyframe_insert("hide_render", frame=frame)
-            cube.keyframe_insert("location", frame=frame)
-        for curve in (*lamp.animation_data.action.fcurves, *cube.animation_data.action.fcurves):
-            for key in curve.keyframe_points:
-                key.interpolation = "CONSTANT" if "energy" in curve.data_path else "LINEAR"
-        for position, moved in (("CENTER", (1.75, 2, 2.25)), ("START", (2, 2.5)), ("END", (1.5, 2))):
-            render = self.scene.render if hasattr(self.scene.render, "motion_blur_position") else self.scene.cycles
-            render.motion_blur_position = position
-            job, said = self.film()
-            self.assertEqual(said, "")
-            power = job.lights["Light"].power.keys
-            self.assertEqual([round(power[frame] / power[1], 3) for frame in (1, 2, 3)], [1, 2, 3])
-            size, *_, move = job.objects["Cube"].transform
-            self.assertEqual(size.scale.keys, {1: 1.0, 2: 1.0, 3: 1e-6})
-            there = [move.translate.keys.get(2 + late) for late in (0, 0.25, 0.5)]
-            self.assertEqual([round(at[0], 3) for at in there if at][-1], moved[-1])
-            self.assertEqual(round(there[0][0], 3), moved[0])
-
-    def test_alpha_counts_that_gets_to_an_output(self) -> None:
-        made, _ = self.material("Leaf")
-        tree = made.node_tree
-        texture = tree.nodes.new("ShaderNodeTexImage")
-        alpha = graph.Output(texture, texture.outputs["Alpha"])
-        self.assertFalse(graph.is_taken(alpha))
-        nowhere = tree.nodes.new("ShaderNodeMath")
-        link = tree.links.new(alpha.socket, nowhere.inputs[0])
-        self.assertFalse(graph.is_taken(alpha))
-        tree.links.new(nowhere.outputs[0], tree.nodes["Diffuse BSDF"].inputs["Roughness"])
-        self.assertTrue(graph.is_taken(alpha))
-        link.is_muted = True
-        self.assertFalse(graph.is_taken(alpha))
-        group = bpy.data.node_groups.new("Leaf", "ShaderNodeTree")
-        group.outputs.new("NodeSocketColor", "Color") if hasattr(group, "outputs") else group.interface.new_socket(
-            "Color", in_out="OUTPUT", socket_type="NodeSocketColor")
-        inner, end = group.nodes.new("ShaderNodeTexImage"), group.nodes.new("NodeGroupOutput")
-        group.links.new(inner.outputs["Alpha"], end.inputs[0])
-        holder = tree.nodes.new("ShaderNodeGroup")
-        holder.node_tree = group
-        alpha = graph.Output(inner, inner.outputs["Alpha"], (holder,))
-        self.assertFalse(graph.is_taken(alpha))
-        tree.links.new(holder.outputs[0], tree.nodes["Diffuse BSDF"].inputs["Color"])
-        self.assertTrue(graph.is_taken(alpha))
-
-
-class NotThere(ExportTest):
-    """What jobs do not have is told by name."""
 
     def test_portals_do_not_shine(self) -> None:
         lamp = bpy.data.objects["Light"]

@@ -5,6 +5,7 @@ from unittest import mock
 import bpy
 import numpy
 from exporting import ExportTest
+from hyades import textures
 
 from hyades_render.export.nodes import principled_inputs
 from hyades_render.export.nodes.evaluate.blackbody import color_of
@@ -53,6 +54,27 @@ class Surfaces(ExportTest):
         for kind, metallic, keeps in (("GGX", 1, False), ("GGX", 0, True), ("MULTI_GGX", 1, True)):
             node.distribution, node.inputs["Metallic"].default_value = kind, metallic
             self.assertEqual(self.export()[0].objects["Cube"].material.multiple_scattering, keeps)
+
+    def test_indices_below_one_are_told(self) -> None:
+        node = self.shaded("ShaderNodeBsdfPrincipled")
+        for ior, told in ((1.2, False), (0.75, True)):
+            node.inputs["IOR"].default_value = ior
+            self.assertEqual("'IOR' is held at 1" in self.export()[1], told)
+
+    def test_numbers_below_nothing_are_computed(self) -> None:
+        """Textures of jobs are held at 0."""
+        node = self.shaded("ShaderNodeEmission")
+        tree = node.id_data
+        checker, math = tree.nodes.new("ShaderNodeTexChecker"), tree.nodes.new("ShaderNodeMath")
+        tree.links.new(checker.outputs["Color"], math.inputs[1])
+        tree.links.new(math.outputs[0], node.inputs["Color"])
+        math.operation, math.inputs[0].default_value = "SUBTRACT", 1
+        for brightest, is_computed in ((0.9, False), (1.2, True)):
+            checker.inputs["Color1"].default_value = (brightest, brightest, brightest, 1)
+            made = self.export()[0].objects["Cube"].emit.color
+            self.assertEqual(isinstance(made, textures.Image), is_computed, made)
+        math.operation, math.inputs[0].default_value = "ADD", -1
+        self.assertIsInstance(self.export()[0].objects["Cube"].emit.color, textures.Image)
 
     def test_inputs_that_nobody_knows_are_told(self) -> None:
         node = self.shaded("ShaderNodeBsdfPrincipled")
@@ -180,3 +202,37 @@ class Values(ExportTest):
         for value in (-0.9, 0.2, 0.7):
             way, back = (OPERATIONS["PINGPONG"](numpy.array(value), numpy.array(scale), None) for scale in (0.5, -0.5))
             self.assertAlmostEqual(float(way), float(back))
+
+    def test_angles_count_as_on_average(self) -> None:
+        made, shader = self.material("Pearl")
+        tree = made.node_tree
+        mix = tree.nodes.new("ShaderNodeMixRGB")
+        mix.inputs["Color1"].default_value, mix.inputs["Color2"].default_value = (0, 0, 0, 1), (1, 1, 1, 1)
+        tree.links.new(mix.outputs[0], shader.inputs[0])
+        bpy.data.objects["Cube"].data.materials[0] = made
+        for kind, socket, expected in (
+            ("ShaderNodeFresnel", "Fac", 0.0796),
+            ("ShaderNodeLayerWeight", "Fresnel", 0.1534),
+            ("ShaderNodeLayerWeight", "Facing", 1 / 3),
+        ):
+            node = tree.nodes.new(kind)
+            if kind == "ShaderNodeFresnel":
+                node.inputs["IOR"].default_value = 1.45  # Blender 4.3 has another default
+            tree.links.new(node.outputs[socket], mix.inputs["Fac"])
+            job, said = self.export()
+            self.assertAlmostEqual(job.objects["Cube"].material.color[0], expected, places=3)
+            self.assertIn("what depends on the angle of view is taken as it is on average", said)
+
+    def test_mixtures_beyond_both_are_computed(self) -> None:
+        made, shader = self.material("Beyond")
+        tree = made.node_tree
+        mix, checker = tree.nodes.new("ShaderNodeMix"), tree.nodes.new("ShaderNodeTexChecker")
+        mix.data_type, mix.clamp_factor, mix.inputs[0].default_value = "RGBA", False, 1.8
+        mix.inputs[6].default_value = (0.1, 0.1, 0.1, 1)
+        checker.inputs[1].default_value = checker.inputs[2].default_value = (0.4, 0.4, 0.4, 1)
+        tree.links.new(checker.outputs[0], mix.inputs[7])
+        tree.links.new(mix.outputs[2], shader.inputs[0])
+        bpy.data.objects["Cube"].data.materials[0] = made
+        self.scene.hyades.bake_size = 64
+        picture = self.export()[0].objects["Cube"].material.color.file
+        self.assertAlmostEqual(float(picture.max()), 0.1 + 1.8 * 0.3, places=4)

@@ -13,6 +13,7 @@ import hyades
 from .camera import add_camera
 from .clipping import tell_of_clipping
 from .context import Complaint, Context, Names
+from .drivers import tell_of_drivers
 from .files import tell_of_libraries
 from .film import add_film
 from .objects import add_objects
@@ -45,4 +46,5 @@ def export_job(depsgraph: Any, *, settings: Any = None, moves: bool = False, cam
     add_objects(context)
     add_world(context)
     tell_of_clipping(context)
+    tell_of_drivers(context)
     return Exported(context.job, context.complaints, context.names)

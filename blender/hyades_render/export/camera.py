@@ -36,6 +36,8 @@ def translated(context: Context, camera: Any) -> cameras.Camera:
     pose = Pose(camera.matrix_world)
     if camera.matrix_world.is_negative:
         context.complain(where, "its scale mirrors the picture, which is rendered as it is without")
+    if pose.is_sheared:
+        context.complain(where, "what it is parented to shears it; it sees as if it were upright")
     placed = {"look_from": pose.place, "look_at": pose.ahead, "up": pose.up}
     if data.type == "PANO":
         kind = panorama_type(context, data)
@@ -43,6 +45,8 @@ def translated(context: Context, camera: Any) -> cameras.Camera:
             context.complain(where, f"panoramas of type {kind.lower()} are not supported; equirectangular is used")
         elif _is_part(data):
             context.complain(where, "a panorama shows all around: its limits are left out")
+        if data.dof.use_dof:
+            context.complain(where, "panoramas are sharp everywhere: its depth of field is left out")
         return cameras.Equirectangular(**placed)
     frame = Frame(context.scene.render, data)
     lens = _lens(context, camera, pose)
@@ -64,7 +68,8 @@ class Pose:
         self.place = axes.numbers(matrix[:3, 3])
         self.ahead = axes.numbers(matrix[:3, 3] + forward)
         self.up = axes.numbers(matrix[:3, 1] / numpy.linalg.norm(matrix[:3, 1]))
-
+        columns = matrix[:3, :3] / numpy.linalg.norm(matrix[:3, :3], axis=0)
+        self.is_sheared = numpy.abs(columns.T @ columns - numpy.eye(3)).max() > 1e-3
 
     def moved(self, right: float, up: float) -> dict[str, list[float]]:
         """Where a camera stands and looks that is moved in its picture's plane."""

@@ -8,7 +8,7 @@ from copy import copy
 from typing import Any, NamedTuple, Optional
 
 import numpy
-from hyades import materials, objects
+from hyades import objects
 
 from . import axes
 from .context import Context, free_name
@@ -25,7 +25,8 @@ from .soft_lamps import Nearness
 from .visibility import LayerFlags, is_seen
 from .volumes import add_volume
 
-_WITH_SURFACE = {"MESH", "CURVE", "SURFACE", "META", "FONT"}
+_BECOME_MESHES = {"CURVE", "SURFACE", "META", "FONT"}
+"""Types of objects that are listed once more, as instances of their own, as the mesh that they are."""
 _WITHOUT = {"CAMERA", "EMPTY", "LATTICE", "ARMATURE", "SPEAKER", "LIGHT_PROBE", "GPENCIL", "GREASEPENCIL"}
 
 
@@ -77,7 +78,10 @@ def add_objects(context: Context) -> None:
     for instance in context.depsgraph.object_instances:
         # Blender may give the object of an instance for this step alone: all is taken from it here.
         object = instance.object
-        if instance.is_instance:  # there may be millions
+        if object.type in _BECOME_MESHES:
+            continue
+        is_copy = instance.is_instance and not _is_own_mesh(instance)
+        if is_copy:  # there may be millions
             data = object.data
             is_indirect = flags.is_indirect(instance)
             known = copies.get(_kind(object, is_indirect)) if data is not None else None
@@ -91,25 +95,37 @@ def add_objects(context: Context) -> None:
         if instance.show_particles and has_hair(object):
             _add_hair_of(context, instance, object, flags.is_indirect(instance))
         if instance.show_self:
-            _add(context, copies, instance, object, flags.is_indirect(instance))
-            if not instance.is_instance:
+            _add(context, copies, instance, object, is_copy, flags.is_indirect(instance))
+            if not is_copy:
                 nearness.add(object, instance.matrix_world)
     nearness.tell(context)
     for one in copies.values():
         _place(context, one)
 
 
-def _add(context: Context, copies: dict[Any, _Copies], instance: Any, object: Any, is_indirect: bool) -> None:
+def _is_own_mesh(instance: Any) -> bool:
+    """Whether an instance is the mesh that a curve, say, is itself."""
+    parent = instance.parent
+    return (
+        parent.type in _BECOME_MESHES
+        and parent.original == instance.object.original
+        and parent.matrix_world == instance.matrix_world
+    )
+
+
+def _add(
+    context: Context, copies: dict[Any, _Copies], instance: Any, object: Any, is_copy: bool, is_indirect: bool
+) -> None:
     """One object, or the first of many copies."""
     kind, matrix = object.type, instance.matrix_world
     _tell_of_settings(context, object)
-    if kind in _WITH_SURFACE and instance.is_instance:
+    if kind == "MESH" and is_copy:
         pieces = pieces_of(context, object, matrix, _origin(instance))
         rows = tuple(axes.array(matrix)[:3].reshape(-1))
         seen = is_seen(context, object) and not is_indirect
         ids = [_id(instance)] if context.moves else []
         copies[_kind(object, is_indirect)] = _Copies(object.name, pieces, seen, [rows], ids, [])
-    elif kind in _WITH_SURFACE:
+    elif kind == "MESH":
         seen = is_seen(context, object) and not is_indirect
         for piece in pieces_of(context, object, matrix, _origin(instance)):
             _add_piece(context, object.name, piece, axes.steps_to_world(matrix), seen)
@@ -139,6 +155,27 @@ def _tell_of_settings(context: Context, object: Any) -> None:
         context.complain(f"object '{object.name}'", "motion blur is for all: it is blurred where it changes its shape")
     if getattr(cycles, "shadow_terminator_offset", 0.0) > 0:
         context.complain(f"object '{object.name}'", "its Shadow Terminator offset is left out: edges of shadows have another remedy")
+    if _is_culled(context.scene, cycles):
+        context.complain(f"object '{object.name}'", "it is there wherever it is: Simplify's culling leaves it out where it is far or unseen")
+    if _is_cut_finer(context.scene, object):
+        what = "Adaptive Subdivision is left out: it is as fine as its Subdivision Surface is with Levels Render"
+        context.complain(f"object '{object.name}'", what)
+
+
+def _is_culled(scene: Any, cycles: Any) -> bool:
+    """Whether Cycles may leave out an object, of which `cycles` are its properties, as it is far or not in the picture."""
+    kinds = ("use_camera_cull", "use_distance_cull")
+    settings = getattr(scene, "cycles", None)
+    return scene.render.use_simplify and any(getattr(settings, kind, False) and getattr(cycles, kind, False) for kind in kinds)
+
+
+def _is_cut_finer(scene: Any, object: Any) -> bool:
+    """Whether Cycles cuts its faces as small as pixels."""
+    last = object.modifiers[-1] if len(object.modifiers) else None
+    if last is None or last.type != "SUBSURF" or not last.show_render:
+        return False
+    is_tried = getattr(getattr(scene, "cycles", None), "feature_set", "") == "EXPERIMENTAL"
+    return is_tried and bool(getattr(getattr(object, "cycles", None), "use_adaptive_subdivision", False))
 
 
 def _add_another(context: Context, copies: _Copies, instance: Any, object: Any) -> bool:
@@ -177,7 +214,7 @@ def _origin(instance: Any) -> Origin:
 @contextmanager
 def evaluated_mesh(object: Any) -> Iterator[Any]:
     """The mesh that an object has after its modifiers; None: it has none."""
-    if object.type == "MESH" and object.mode != "EDIT":
+    if object.mode != "EDIT":
         # That of the evaluated object, without a copy.
         yield object.data if len(object.data.polygons) else None
         return
@@ -190,10 +227,9 @@ def evaluated_mesh(object: Any) -> Iterator[Any]:
 
 def pieces_of(context: Context, object: Any, matrix: Any, origin: Origin) -> list[Piece]:
     """The parts of an object's evaluated mesh, one for each material; `matrix`, Blender's, leads into its world."""
-    is_mesh = object.type == "MESH"
     slotted = tuple(slot.material.name_full if slot.material else "" for slot in object.material_slots)
     key = (object.data.as_pointer(), slotted)
-    if is_mesh and key in context.pieces:
+    if key in context.pieces:
         return context.pieces[key]
     with evaluated_mesh(object) as mesh:
         if mesh is None:
@@ -207,11 +243,10 @@ def pieces_of(context: Context, object: Any, matrix: Any, origin: Origin) -> lis
         parts = [PartOfSurface(surface, slots == slot if len(kinds) > 1 else slice(None)) for slot in kinds]
         try:
             found = [_piece(context, one, _material_in(context, object, int(slot))) for one, slot in zip(parts, kinds)]
-            _tell_of_panes(context, object, mesh, [slot for one, slot in zip(found, kinds) if _is_glass(one.body.material)])
         except ValueError as error:  # of a mesh that the job refuses: it has numbers that are none, say
             context.complain(f"object '{object.name}'", f"its mesh is left out: {error}")
             return []
-    if is_mesh and not any(one.is_of_object for one in parts):
+    if not any(one.is_of_object for one in parts):
         context.pieces[key] = found  # objects without modifiers of their own share their mesh
     return found
 
@@ -226,28 +261,6 @@ def _piece(context: Context, whole: PartOfSurface, data: Any) -> Piece:
     if not values.is_constant(made.emission, 0):
         body.emit = objects.Emit(color=values.held(made.emission, 0.0, 1e18), radiance=1, two_sided=not made.is_one_sided)
     return Piece(body, made, whole.is_of_object)
-
-
-def _tell_of_panes(context: Context, object: Any, mesh: Any, of_glass: list[Any]) -> None:
-    """Complains of glass that has no inside: light that gets into glass is denser for the job, not for Cycles. `of_glass`:
-    slots of the mesh."""
-    if not of_glass:
-        return
-    edges = numpy.empty(len(mesh.loops), "int32")
-    mesh.loops.foreach_get("edge_index", edges)
-    slots, sides = (numpy.empty(len(mesh.polygons), "int32") for _ in range(2))
-    mesh.polygons.foreach_get("material_index", slots)
-    mesh.polygons.foreach_get("loop_total", sides)
-    is_rim = numpy.bincount(edges) == 1
-    if is_rim[edges[numpy.repeat(numpy.isin(slots, of_glass), sides)]].any():
-        what = "glass without an inside is brighter or darker than in Cycles: give it a thickness (Solidify)"
-        context.complain(f"object '{object.name}'", what)
-
-
-def _is_glass(material: Any) -> bool:
-    if isinstance(material, materials.Principled):
-        return not values.is_constant(material.transmission, 0)
-    return isinstance(material, materials.Dielectric)
 
 
 def _material_in(context: Context, object: Any, slot: int) -> Optional[Any]:

@@ -87,6 +87,8 @@ def _picture(translator: Translator, source: Output, strength: float) -> hyades.
     if node.image is None or node.projection != "EQUIRECTANGULAR":
         raise Inexpressible(source, "only panoramas are environments of the job")
     turn = _turn(translator, source)
+    if node.interpolation == "Closest":
+        translator.complain(node, "it is smooth between its pixels, not as by Closest")
     found = image_file(translator, node, source)
     if found.color_space == "srgb" and str(found.file).lower().endswith((".hdr", ".exr")):
         raise Inexpressible(source, "light that is marked as sRGB is computed")

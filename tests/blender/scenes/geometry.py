@@ -156,6 +156,15 @@ def curve_and_text() -> None:
     add(text, at=(-0.8, -0.5, 0.6), turn=(90, 0, 0))
 
 
+@scene(samples=128, complaints=("object 'Text': its normals lean far from its faces",))
+def text_that_glows() -> None:
+    lit()
+    text = bpy.data.curves.new("Text", "FONT")
+    text.body, text.extrude, text.size = "Hy", 0.1, 1.2
+    text.materials.append(material("Neon", "ShaderNodeEmission", Color=(1, 0.3, 0.1), Strength=3.0))
+    add(text, at=(-0.8, -0.5, 0.6), turn=(90, 0, 0))
+
+
 @scene(samples=64)
 def color_by_object() -> None:
     # One material, whose colour is that of each object.

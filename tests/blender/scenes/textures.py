@@ -431,3 +431,27 @@ def lit_board(made) -> None:
     camera((0, -4, 0), (0, 0, 0))
     light("SUN", 3, at=(3, -4, 2), angle=0)
 
+
+@scene(samples=128)
+def weak_bump() -> None:
+    """Steep hills, of which normals take a tenth."""
+    made = material(node="ShaderNodeBsdfDiffuse", Color=0.8)
+    bump = node(made, "ShaderNodeBump", Strength=0.1, Distance=4.0)
+    noise = node(made, "ShaderNodeTexNoise", Scale=4.0)
+    link(made, node(made, "ShaderNodeTexCoord").outputs["Object"], noise.inputs["Vector"])
+    link(made, noise.outputs[0], bump.inputs["Height"])
+    link(made, bump.outputs[0], shader_of(made).inputs["Normal"])
+    lit_board(made)
+
+
+@scene(samples=64)
+def numbers_below_nothing() -> None:
+    """What is below 0 on the way and above it in the end."""
+    made, checker = board("ShaderNodeTexChecker", Scale=3.0, Color1=(0.9, 0.9, 0.9), Color2=(0.4, 0.4, 0.4))
+    twice, rest, more = (node(made, "ShaderNodeMath") for _ in range(3))
+    twice.operation, rest.operation = "MULTIPLY", "SUBTRACT"
+    twice.inputs[1].default_value, rest.inputs[0].default_value, more.inputs[1].default_value = 2.0, 1.0, 0.8
+    link(made, checker.outputs["Color"], twice.inputs[0])
+    link(made, twice.outputs[0], rest.inputs[1])
+    link(made, rest.outputs[0], more.inputs[0])
+    link(made, more.outputs[0], shader_of(made).inputs["Color"])

@@ -70,6 +70,8 @@ def _uv(translator: Translator, output: Output, name: str) -> Coordinates:
         raise Inexpressible(output, "there are no UV coordinates")
     if translator.uv_map not in (None, name):
         raise Inexpressible(output, "this is the second UV map of one material")
+    if not _has_uv(translator, name):
+        raise Inexpressible(output, "the mesh has no such UV map: Cycles looks at the corner of the picture")
     translator.uv_map = name
     return Coordinates("uv", numpy.eye(4))
 

@@ -96,8 +96,9 @@ def checker(translator: Translator, output: Output) -> Value:
         raise Inexpressible(output, "UV coordinates of the job have two parts, and the mapping makes a third of them")
     # Blender nudges places away from whole numbers, which for the zeros of flat things matters: 0 lies in cell 0.
     nudge = [0.000001 * 0.999999] * 3
-    keys = {"a": held(second, 0, 1e18), "b": held(first, 0, 1e18)}
-    return textures.Checker(**keys, scale=[scale * 0.999999] * 3, offset=nudge, mapping=place.mapping())
+    if not (_positive(first) and _positive(second)):
+        raise Inexpressible(output, "textures of the job know no numbers below 0")
+    return textures.Checker(a=held(second, 0, 1e18), b=held(first, 0, 1e18), scale=[scale * 0.999999] * 3, offset=nudge, mapping=place.mapping())
 
 
 @native("VALTORGB")
@@ -145,6 +146,8 @@ def mix(translator: Translator, output: Output) -> Value:
 
 def _mixed(output: Output, blend: str, a: Value, b: Value, amount: Value, clamp: bool) -> Value:
     amount = amount if is_texture(amount) else held(values.number(amount))
+    if any(map(is_texture, (a, b, amount))) and not (_positive(a) and _positive(b)):
+        raise Inexpressible(output, "textures of the job know no numbers below 0")
     if blend == "MIX":
         result = values.mixed(a, b, amount)
     elif blend == "MULTIPLY":
@@ -163,7 +166,7 @@ def _mixed(output: Output, blend: str, a: Value, b: Value, amount: Value, clamp:
 def invert(translator: Translator, output: Output) -> Value:
     if _constant(translator, output, "Fac") != 1:
         raise Inexpressible(output, "the job inverts as a whole only")
-    return values.rest(_input(translator, output, "Color"))
+    return _inverted(output, _input(translator, output, "Color"))
 
 
 @native("GAMMA")
@@ -205,7 +208,7 @@ def math(translator: Translator, output: Output) -> Value:
     elif node.operation == "ADD" and _positive(a) and _positive(b):
         result = values.total(a, b)
     elif node.operation == "SUBTRACT" and values.is_constant(a, 1):
-        result = values.rest(b)
+        result = _inverted(output, b)
     elif node.operation == "POWER" and not is_texture(b) and _positive(b):
         result = textures.Power(input=a, exponent=values.number(b))
     elif node.operation in ("MINIMUM", "MAXIMUM") and _positive(a) and _positive(b):
@@ -217,7 +220,14 @@ def math(translator: Translator, output: Output) -> Value:
 
 
 def _positive(value: Value) -> bool:
-    return is_texture(value) or values.number(value) >= 0
+    return is_texture(value) or min(values.color(value)) >= 0
+
+
+def _inverted(output: Output, value: Value) -> Value:
+    """1 - value."""
+    if is_texture(value) and values.most(value) > 1:
+        raise Inexpressible(output, "textures of the job know no numbers below 0")
+    return values.rest(value)
 
 
 __all__ = ["Input"]

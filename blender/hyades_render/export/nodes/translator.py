@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any, Callable, Optional
 
 from ..context import Context
@@ -69,9 +70,9 @@ class Translator:
         return values.number(self.value(end, default))
 
     def color(self, end: Optional[Input], default: Value = 0.0) -> Any:
-        """What an input is, as what things make of light: 0 to 1. Complains of a constant beyond."""
+        """What an input is, as what things make of light: 0 to 1. Complains where it is known that it may be beyond."""
         value = self.value(end, default)
-        if end is not None and not values.is_texture(value) and max(values.color(value)) > 1.00001:
+        if end is not None and 1.00001 < values.most(value) < math.inf:
             self.complain(end.socket.node, f"'{end.socket.name}' is held at 1: nothing reflects more light than it gets")
         return values.held(value)
 

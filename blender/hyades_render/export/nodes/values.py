@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any, Union
 
+import numpy
 from hyades import textures
 
 Value = Union[float, "tuple[float, float, float]", textures.Texture]
 """A number; linear [r, g, b]; or a texture."""
 
 _LUMINANCE = (0.2126, 0.7152, 0.0722)
+_OF_LIGHT = (".exr", ".hdr", ".tif", ".tiff")
+"""Files that may hold numbers above 1."""
 
 
 def is_texture(value: Value) -> bool:
@@ -110,6 +114,30 @@ def quotient(a: Value, b: Value) -> Value:
         return textures.Divide(a=_plain(a), b=_plain(b))
     x, y = color(a), color(b)
     return tuple(p / q if q else 0.0 for p, q in zip(x, y))  # type: ignore[return-value]
+
+
+def most(value: Any) -> float:
+    """What no part of a value is above, as far as it is known."""
+    if not is_texture(value):
+        return max(color(value))
+    pixels = getattr(value, "file", None)
+    if isinstance(pixels, numpy.ndarray) and pixels.dtype.kind == "f":
+        return float(pixels.max(initial=0.0))
+    if isinstance(value, textures.Image):
+        return math.inf if str(value.file).lower().endswith(_OF_LIGHT) else 1.0
+    if isinstance(value, textures.Ramp):
+        return max(map(most, value.stops.values()))
+    if isinstance(value, (textures.Invert, textures.VertexColor)):
+        return 1.0
+    parts = [most(part) for part in (getattr(value, name, None) for name in ("a", "b", "input", "factor")) if part is not None]
+    if isinstance(value, textures.Add):
+        return sum(parts)
+    if isinstance(value, textures.Scale):
+        return parts[0] * parts[1]
+    if isinstance(value, textures.Min):
+        return min(parts)
+    is_within_parts = isinstance(value, (textures.Checker, textures.Mix, textures.Max, textures.Channel))
+    return max(parts) if is_within_parts else math.inf
 
 
 def _plain(value: Value) -> Any:

@@ -10,7 +10,7 @@ from .. import graph
 from ..graph import Input, Output
 from ..mappings import own_matrix
 from ..translator import Inexpressible, default_of
-from .points import Points, Varies  # noqa: F401
+from .points import Points, Varies, transformed  # noqa: F401
 
 Array = Any
 LUMINANCE = numpy.array([0.2126, 0.7152, 0.0722])
@@ -62,14 +62,18 @@ class Evaluator:
 
     color = vector
 
-    def place(self, output: Output, uv: bool = False) -> Array:
-        """Where a texture looks: input "Vector", or where that is not linked, generated coordinates or the active UV
-        map; moved as its own mapping says."""
+    def place(self, output: Output, unlinked: str = "generated") -> Array:
+        """Where a texture looks: input "Vector", or where that is not linked, "generated" coordinates, the active "uv"
+        map or the "position" in the world; moved as its own mapping says."""
         end = output.input("Vector")
         if end is not None and isinstance(graph.source(end), Output):
             place = self.vector(output, "Vector")
+        elif unlinked == "uv":
+            place = with_zero(self.points.uv(""))
+        elif unlinked == "position":
+            place = transformed(self.points.matrix(), self.points.position())
         else:
-            place = with_zero(self.points.uv("")) if uv else self.points.generated()
+            place = self.points.generated()
         own = own_matrix(output)
         return place if own is None else place @ own[:3, :3].T + own[:3, 3]
 

@@ -93,7 +93,7 @@ def image_texture(at: Evaluator, output: Output) -> Array:
         raise Inexpressible(output, f"images of source {node.image.source.lower()} cannot be computed")
     if output.socket.identifier == "Alpha" and node.image.alpha_mode == "NONE":
         return numpy.asarray(1.0)
-    place = numpy.atleast_2d(at.place(output, uv=True))
+    place = numpy.atleast_2d(at.place(output, "uv"))
     pixels = pixels_of(output, at.translator.context)
     found = sum(
         share[:, None] * looked_up(pixels, u, v, node.extension, node.interpolation)
@@ -111,7 +111,7 @@ def environment_texture(at: Evaluator, output: Output) -> Array:
         raise Inexpressible(output, "there is no image")
     if node.projection != "EQUIRECTANGULAR":
         raise Inexpressible(output, "mirror balls are not supported")
-    direction = numpy.atleast_2d(at.place(output))
+    direction = numpy.atleast_2d(at.place(output, "position"))
     direction = direction / numpy.maximum(numpy.linalg.norm(direction, axis=1, keepdims=True), 1e-20)
     u = -numpy.arctan2(direction[:, 1], direction[:, 0]) / (2 * numpy.pi) + 0.5
     v = numpy.arcsin(numpy.clip(direction[:, 2], -1, 1)) / numpy.pi + 0.5
