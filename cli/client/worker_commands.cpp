@@ -23,8 +23,8 @@ std::string ago(int64_t ms) {
 
 void print_workers(const v1::WorkersResponse& response) {
   std::vector<std::vector<std::string>> rows = {{"id", "name", "state", "threads", "units out",
-                                                 "done", "failed", "class", "tags", "heard",
-                                                 "reason"}};
+                                                 "done", "failed", "class", "portable", "tags",
+                                                 "heard", "reason"}};
   std::vector<v1::Worker> workers(response.workers().begin(), response.workers().end());
   std::stable_sort(workers.begin(), workers.end(), [](const v1::Worker& a, const v1::Worker& b) {
     return is_before(a.name(), b.name());
@@ -33,7 +33,7 @@ void print_workers(const v1::WorkersResponse& response) {
     rows.push_back({std::to_string(worker.id()), worker.name(), state_name(worker.state()),
                     std::to_string(worker.threads()), std::to_string(worker.leased()),
                     core::format_count(worker.units_done()), std::to_string(worker.units_failed()),
-                    worker.worker_class().substr(0, 12),
+                    worker.worker_class().substr(0, 12), worker.portable_class().substr(0, 12),
                     fmt::format("{}", fmt::join(worker.tags(), ",")),
                     ago(worker.heard_ms()) + " ago", worker.reason()});
   }

@@ -79,6 +79,7 @@ v1::Worker FarmControl::describe(const WorkerSession& session) const {
   wire.set_name(session.hello.name());
   wire.set_host(session.hello.host());
   wire.set_worker_class(session.hello.worker_class());
+  wire.set_portable_class(session.hello.portable_class());
   wire.set_build(session.hello.build());
   wire.set_threads(session.hello.threads());
   wire.set_state(session.state);

@@ -164,7 +164,7 @@ const columns = [
     drop: 3,
     cell: (td, w) => {
       setText(td, brief(w.worker_class));
-      td.title = `${w.worker_class}\n${w.build}`;
+      td.title = `${w.worker_class}\nportable: ${w.portable_class || 'none'}\n${w.build}`;
     },
   },
   {

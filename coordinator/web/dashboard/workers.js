@@ -38,9 +38,15 @@ export function workersView() {
         (worker) =>
           (!states.value || worker.state === states.value) &&
           words.every((word) =>
-            [worker.name, worker.host, worker.worker_class, worker.build, worker.reason, ...worker.tags].some((text) =>
-              text.toLowerCase().includes(word),
-            ),
+            [
+              worker.name,
+              worker.host,
+              worker.worker_class,
+              worker.portable_class,
+              worker.build,
+              worker.reason,
+              ...worker.tags,
+            ].some((text) => text.toLowerCase().includes(word)),
           ),
       ),
     );

@@ -156,6 +156,8 @@ class WorkerState:
     cache_hits: int = 0
     cache_misses: int = 0
     samples_per_second: float = 0.0
+    portable_class: str = ""
+    """As worker_class, of the portable class; empty: it renders nothing in that."""
 
 
 @dataclass(frozen=True, kw_only=True)
