@@ -30,8 +30,9 @@ std::string build_id();
 std::string sources_id();
 
 /// A film of the built-in probe scene: a mesh that stands, one that moves (an instance), coplanar
-/// duplicates, quadrics, glass, metal, noise in space and time, bump, an image, a sky, a lamp, a
-/// lens, motion blur. About 100,000 rays, some 0.1 s of one core. The same for any `threads` >= 1.
+/// duplicates, quadrics, copies by a file, strands, glass with a medium in it, skin, smoke, metal,
+/// noise in space and time, bump, an image, a sky, a lamp, a lens, motion blur. About 200,000 rays,
+/// some 0.2 s of one core. The same for any `threads` >= 1.
 /// Errors: native, and Embree does not run here.
 Result<Film> render_class_probe(RenderClass which, int threads = 1);
 
@@ -42,7 +43,7 @@ Result<ClassProbe> probe_class(RenderClass which, int threads = 1);
 /// of one frame.
 std::string class_of(const ClassProbe& probe);
 
-/// The class of this machine and program, measured at the first call (about 0.1 s). Thread-safe.
+/// The class of this machine and program, measured at the first call (about 0.2 s). Thread-safe.
 Result<std::string> this_class(RenderClass which);
 
 }  // namespace hyades::core

@@ -9,6 +9,9 @@
 #include <fmt/format.h>
 
 #include "core/base/hash.h"
+#include "core/base/vec.h"
+#include "core/geometry/curve_set.h"
+#include "core/geometry/read_hair.h"
 
 namespace hyades::core {
 namespace {
@@ -17,6 +20,8 @@ namespace {
 constexpr int kWaveCells = 40;
 constexpr int kSkyWidth = 64;
 constexpr int kSkyHeight = 32;
+constexpr int kStrands = 64;
+constexpr int kStrandPoints = 4;
 
 /// Whole numbers in thousandths, so that the text (and with it the mesh) is the same everywhere.
 std::string wave_obj() {
@@ -34,6 +39,35 @@ std::string wave_obj() {
       text += fmt::format("f {} {} {} {}\n", corner(x, y), corner(x, y + 1), corner(x + 1, y + 1),
                           corner(x + 1, y));
     }
+  }
+  return text;
+}
+
+/// A tuft: strands that lean to all sides. Halves and quarters, so that they are the same
+/// everywhere.
+std::string tuft_hair() {
+  StrandList tuft;
+  for (int i = 0; i < kStrands; ++i) {
+    const Vec2 root(static_cast<float>(i % 8) / 8.0F, static_cast<float>(i / 8) / 8.0F);
+    for (int at = 0; at < kStrandPoints; ++at) {
+      const float up = static_cast<float>(at) / 4.0F;
+      tuft.points.emplace_back(root.x + (root.x - 0.5F) * up * up, up, root.y + 0.25F * up);
+      tuft.radii.push_back(0.03125F);
+    }
+    tuft.sizes.push_back(kStrandPoints);
+  }
+  const Bytes bytes = hair_bytes(tuft);
+  return {bytes.chars(), bytes.size()};
+}
+
+/// Copies on a slope.
+std::string crowd_ply() {
+  std::string text =
+      "ply\nformat ascii 1.0\nelement vertex 36\nproperty float x\nproperty float y\nproperty "
+      "float "
+      "z\nproperty float scale\nend_header\n";
+  for (int i = 0; i < 36; ++i) {
+    text += fmt::format("{}e-2 {}e-2 {}e-2 {}e-2\n", 40 * (i % 6), 10 + i, 30 * (i / 6), 50 + i);
   }
   return text;
 }
@@ -95,8 +129,20 @@ materials:
   frost: {type: dielectric, ior: 1.4, roughness: 0.3}
   card: {type: lambert, color: faded}
   red: {type: lambert, color: [0.8, 0.1, 0.05]}
+  skin: {type: principled, base_color: [0.8, 0.5, 0.3], roughness: 0.4, coat: 0.5, subsurface: {color: [0.9, 0.6, 0.4], radius: 0.05}}
+  fur: {type: hair, color: [0.4, 0.25, 0.1]}
+  air: {type: "null"}
   blend: {type: mix, first: red, second: gold, amount: 0.4}
+media:
+  milk: {scattering: [6, 8, 10], absorption: [0.3, 0.1, 0.05], g: 0.4}
+  smoke: {albedo: 0.8, scale: 5, g: -0.2, density: {noise: {scale: 3, octaves: 2, fade: 0.4}}}
+groups:
+  pebble: {objects: {stone: {shape: sphere, radius: 0.12, material: gold}, cap: {mesh: wave.obj, material: red, transform: [{scale: 0.1}]}}}
 objects:
+  crowd: {instance: pebble, places: crowd.ply, at: [-2.6, 0.1, -2.6]}
+  tuft: {curves: tuft.hair, material: fur, transform: [{scale: 0.5}], at: [-1.9, 0.1, 0.4]}
+  cloud: {shape: box, size: [1.2, 0.9, 0.8], material: air, interior: smoke, at: [1.9, 0.6, -1.2]}
+  nose: {shape: sphere, radius: 0.3, material: skin, at: [-0.3, 0.3, 1.5]}
   hills: {mesh: wave.obj, material: floor, transform: [{scale: [3, 1, 3]}]}
   flag: {mesh: wave.obj, material: card, transform: [{scale: 0.6}, {rotate_x: 70}, {rotate_y: "= 100 * t"}], at: ["= -1.4 + 3 * t", 1.0, -0.6]}
   sheet: {mesh: wave.obj, material: red, transform: [{scale: 0.3}, {rotate_z: 40}], at: [1.5, 1.4, 0]}
@@ -105,7 +151,7 @@ objects:
   cube: {shape: box, size: [0.5, 0.5, 0.5], material: blend, at: [0.2, 0.3, 1.2]}
   cube_again: {shape: box, size: [0.5, 0.5, 0.5], material: red, at: [0.2, 0.3, 1.2]}
   ball: {shape: sphere, radius: 0.55, material: gold, at: [0, "= 0.7 + 2 * t", -0.2]}
-  drop: {shape: sphere, radius: 0.4, material: glass, at: [0.95, 0.5, 0.9]}
+  drop: {shape: sphere, radius: 0.4, material: glass, interior: milk, at: [0.95, 0.5, 0.9]}
   ice: {shape: cylinder, radius: 0.25, height: 0.7, material: frost, at: [-0.7, 0.1, 0.6]}
   coin: {shape: disk, radius: 0.3, material: gold, transform: [{rotate_z: 55}], at: [1.5, 0.5, 0.2]}
   lamp: {shape: sphere, radius: 0.3, at: [-2.5, 3.5, 2], emit: {color: 3400K, power: 200}}
@@ -114,7 +160,10 @@ environment: {image: sky.hdr, rotate_y: 25, strength: 0.7}
 
 std::unique_ptr<AssetResolver> make_probe_assets() {
   return std::make_unique<MemoryResolver>(
-      std::map<std::string, std::string>{{"wave.obj", wave_obj()}, {"sky.hdr", sky_hdr()}});
+      std::map<std::string, std::string>{{"wave.obj", wave_obj()},
+                                         {"sky.hdr", sky_hdr()},
+                                         {"tuft.hair", tuft_hair()},
+                                         {"crowd.ply", crowd_ply()}});
 }
 
 }  // namespace hyades::core
