@@ -21,6 +21,7 @@ class Volumes(ExportTest):
         self.scene.collection.objects.link(body)
         made = bpy.data.materials.new("Fog")
         made.use_nodes = True
+        made.node_tree.nodes.remove(made.node_tree.nodes["Principled BSDF"])
         node = made.node_tree.nodes.new(shader)
         made.node_tree.links.new(node.outputs[0], made.node_tree.nodes["Material Output"].inputs["Volume"])
         data.materials.append(made)
@@ -34,6 +35,12 @@ class Volumes(ExportTest):
             job, said = self.export()
             self.assertEqual(said, "")
             numpy.testing.assert_allclose(job.objects["Smoke"].interior.scattering, [expected] * 3, rtol=1e-5)
+
+    def test_surfaces_of_files_are_told(self) -> None:
+        body, _ = self.smoke()
+        tree = body.data.materials[0].node_tree
+        tree.links.new(tree.nodes.new("ShaderNodeBsdfDiffuse").outputs[0], tree.nodes["Material Output"].inputs["Surface"])
+        self.assertEqual(self.export()[1], "material 'Fog': volumes of files have no surface: that of the material is left out")
 
     def test_grids_that_are_not_there_are_told(self) -> None:
         _, node = self.smoke(smoke=_FULL, Cd=_RED)

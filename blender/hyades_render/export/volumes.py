@@ -92,6 +92,8 @@ def _shader(context: Context, material: Any) -> Optional[tuple[Translator, Outpu
         return None
     translator = Translator(context, f"material '{material.name}'")
     output = graph.output_node(material.node_tree, "OUTPUT_MATERIAL")
+    if output is not None and isinstance(graph.source(graph.find_input(output, (), "Surface")), Output):
+        context.complain(f"material '{material.name}'", "volumes of files have no surface: that of the material is left out")
     end = graph.find_input(output, (), "Volume") if output is not None else None
     found = graph.source(end) if end is not None else None
     return (translator, found) if isinstance(found, Output) else None
