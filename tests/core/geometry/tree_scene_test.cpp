@@ -10,6 +10,7 @@
 #include <tuple>
 #include <vector>
 
+#include "core/geometry/curve_set.h"
 #include "tests/core/geometry/test_worlds.h"
 
 namespace hyades::core {
@@ -194,6 +195,85 @@ TEST(TreeScene, OfTwoInOnePlaceTheFirstIsMet) {
       }
     }
   }
+}
+
+/// Strands, quadrics, meshes that stand and instances that move, some of them unseen by the camera;
+/// no shape twice.
+std::vector<Placement> one_of_each(Random& random) {
+  std::vector<Placement> all;
+  const auto somewhere = [&] {
+    return test::translation(2.0F * random.direction()) * test::random_rotation(random);
+  };
+  for (int i = 0; i < 24; ++i) {
+    Placement made;
+    const Mat4 at = somewhere();
+    if (i % 4 == 0) {
+      StrandList tuft;
+      for (int strand = 0; strand < 20; ++strand) {
+        const Vec3 root = test::in_box(random, Vec3(-0.5F), Vec3(0.5F));
+        const Vec3 way = random.direction();
+        for (int k = 0; k < 4; ++k) {
+          tuft.points.push_back(root + 0.3F * static_cast<float>(k) * way);
+          tuft.radii.push_back(0.04F);
+        }
+        tuft.sizes.push_back(4);
+      }
+      made.shape.kind = Shape::Kind::curves;
+      made.shape.curves = *make_curve_set(tuft, CurveBasis::catmull_rom);
+      made.to_world = {at};
+    } else if (i % 4 == 1) {
+      const Shape::Kind kinds[] = {Shape::Kind::sphere, Shape::Kind::disk, Shape::Kind::cylinder};
+      made = test::place(kinds[i / 4 % 3], 0.6F, 1.0F, {at, test::translation({0.2F, 0, 0}) * at});
+    } else {
+      made = test::place(make_soup(60, random), {at});
+      made.changes_between_frames = i % 4 == 2;
+      if (i % 8 == 2) made.to_world.push_back(test::translation({0, 0.3F, 0}) * at);
+    }
+    made.visible_to_camera = i % 5 != 0;
+    all.push_back(made);
+  }
+  return all;
+}
+
+TEST(TreeScene, WhatIsMetDoesNotDependOnWhatElseIsThere) {
+  Random random(15);
+  const std::vector<Placement> placements = one_of_each(random);
+  GeometryCache cache;
+  const auto all = build_world(placements, cache, RenderClass::portable, test::kInstanceAll);
+  ASSERT_TRUE(all) << all.error().message;
+  std::vector<std::shared_ptr<const World>> alone;
+  for (const Placement& placement : placements) {
+    GeometryCache own;
+    alone.push_back(*build_world({placement}, own, RenderClass::portable, test::kInstanceAll));
+  }
+  const FpMode mode;
+  std::vector<int> met(placements.size());
+  for (int n = 0; n < 20'000; ++n) {
+    Ray ray;
+    ray.origin = test::in_box(random, Vec3(-4.0F), Vec3(4.0F));
+    ray.direction = glm::normalize(2.0F * random.direction() - ray.origin);
+    ray.time = random.uniform();
+    for (const RayKind kind : {RayKind::camera, RayKind::other}) {
+      const auto hit = (*all)->intersect(ray, kind);
+      std::optional<Hit> nearest;
+      bool hidden = false;
+      for (const auto& world : alone) {
+        const auto one = world->intersect(ray, kind);
+        if (one && (!nearest || one->t < nearest->t)) nearest = one;
+        hidden |= world->occluded(ray);
+      }
+      ASSERT_EQ(hit.has_value(), nearest.has_value());
+      ASSERT_EQ((*all)->occluded(ray), hidden);
+      if (!hit) continue;
+      ++met[hit->object];
+      const auto own = alone[hit->object]->intersect(ray, kind);
+      ASSERT_TRUE(own);
+      ASSERT_EQ(hit->t, nearest->t);
+      ASSERT_EQ(std::tie(hit->primitive, hit->t, hit->u, hit->v),
+                std::tie(own->primitive, own->t, own->u, own->v));
+    }
+  }
+  EXPECT_GT(*std::min_element(met.begin(), met.end()), 20);
 }
 
 }  // namespace
