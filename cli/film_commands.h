@@ -23,6 +23,10 @@ int contact_sheet_command(int argc, char** argv);
 /// `hyades denoise`: a picture without its noise.
 int denoise_command(int argc, char** argv);
 
+/// `hyades relight a.exr --group key=0.5 -o b.exr`: a picture whose light groups are brighter or
+/// darker. Exit status: 0 fine, 2 wrong arguments, or a picture that cannot be read or written.
+int relight_command(int argc, char** argv);
+
 /// `hyades-film finish FOLDER`: what a coordinator starts to make a frame's outputs
 /// (coordinator/finisher/finish_task.h). Exit status: 0 done, 1 it failed, and why is on standard
 /// error.

@@ -59,6 +59,7 @@ const std::vector<Group>& groups() {
        {{"info", "hyades-film", "what is in a picture or a film"},
         {"convert", "hyades-film", "write a picture as another one, as a display shows it"},
         {"denoise", "hyades-film", "take the noise out of a picture"},
+        {"relight", "hyades-film", "make light groups of a picture brighter or darker"},
         {"compare", "hyades-film",
          "compare two pictures, statistically where they carry variances"},
         {"contact-sheet", "hyades-film", "put many pictures on one sheet"}}},
