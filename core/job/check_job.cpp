@@ -185,7 +185,9 @@ Status may_name(const std::string& script, const std::string& reference, AssetRe
 /// what a job opens knows them.
 Status open_all(const FileUse& use, AssetResolver& assets, FileSequenceOpener& sequences) {
   const std::string& reference = use.reference;
-  if (use.per_frame && is_file_sequence(reference)) return sequences.open(reference);
+  if (use.per_frame && is_file_sequence(reference)) {
+    return sequences.open(reference, *use.per_frame);
+  }
   std::vector<std::string> files = {reference};
   if (is_udim(reference)) {
     const auto tiles = udim_tiles(assets, reference);

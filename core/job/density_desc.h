@@ -6,6 +6,7 @@
 
 #include "core/job/animated.h"
 #include "core/job/fields.h"
+#include "core/job/inputs.h"
 #include "core/job/transform_desc.h"
 
 namespace hyades::core {
@@ -83,7 +84,7 @@ struct DensityDesc {
 
   template <class Self, class Visitor>
   static void fields(Self& self, Visitor& visit) {
-    visit.frame_file("vdb", self.vdb);
+    visit.frame_file("vdb", self.vdb, FrameFiles::own);
     visit.text("grid", self.grid, "the name of a grid of numbers in the file");
     visit.text("tint", self.tint, "the name of a grid of colours in the file");
     visit.choice("place", self.place, kVdbPlaceNames);

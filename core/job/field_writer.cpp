@@ -132,12 +132,13 @@ void FieldWriter::put_file(std::string_view key, const std::string& reference) {
   }
 }
 
-void FieldWriter::frame_file(const KeyName& key, const std::string& reference) {
+void FieldWriter::frame_file(const KeyName& key, const std::string& reference, FrameFiles files) {
   if (!is_file_sequence(reference)) return put_file(key.line, reference);
   const JobTime& now = moments_.front();
   put_file(key.line, frame_file_at(reference, now));
   const std::string next = frame_file_at(reference, {now.seconds, now.frame + 1.0});
-  if (ahead_ && hashes_.contains(next)) put_file("next", next);
+  const bool ahead = ahead_ && files == FrameFiles::own_and_next;
+  if (ahead && hashes_.contains(next)) put_file("next", next);
   sequences_.insert(reference);
 }
 

@@ -69,9 +69,9 @@ class FieldWriter : public FieldVisitor<FieldWriter> {
 
   // As a visitor of keys.
   void file(const KeyName& key, const std::string& reference) { put_file(key.line, reference); }
-  /// The file at a frame of the job, of a sequence that and, where frames look ahead, the next one,
-  /// as far as they are known.
-  void frame_file(const KeyName& key, const std::string& reference);
+  /// The file at a frame of the job, of a sequence that and, where frames look ahead and `files`
+  /// says so, the next one, as far as they are known.
+  void frame_file(const KeyName& key, const std::string& reference, FrameFiles files);
   void children(const KeyName& key, const std::vector<ObjectDesc>& children);
   void light_group(const KeyName& key, const std::string& group) {
     if (!group.empty()) put(key.line, group);

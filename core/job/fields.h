@@ -79,7 +79,9 @@ class FieldVisitor {
     if (second != first) put(second_line, second);
   }
   void name_of(const KeyName& key, const std::string& value, NameKind /*kind*/) { put(key, value); }
-  void frame_file(const KeyName& key, const std::string& value) { derived().file(key, value); }
+  void frame_file(const KeyName& key, const std::string& value, FrameFiles /*files*/) {
+    derived().file(key, value);
+  }
   void file(const KeyName& key, const std::string& value) { put(key, value); }
   void light_group(const KeyName& key, const std::string& value) { put(key, value); }
   void transform(const KeyName& key, const TransformList& value) { put(key, value); }

@@ -47,7 +47,8 @@ std::set<std::string> sequence_files(const Job& job, const std::set<std::string>
 FileSequenceOpener::FileSequenceOpener(const Job& job, AssetResolver& assets)
     : frames_(job.frames), assets_(assets), ahead_(looks_at_next_frame(job)) {}
 
-Status FileSequenceOpener::open(const std::string& pattern) {
+Status FileSequenceOpener::open(const std::string& pattern, FrameFiles files) {
+  const bool ahead = ahead_ && files == FrameFiles::own_and_next;
   for (int64_t at = frames_.first; at <= frames_.last; at += frames_.step) {
     if (++looked_for_ > kMostSequenceFiles) {
       return Error{"the job's sequences of files have more than " +
@@ -55,7 +56,7 @@ Status FileSequenceOpener::open(const std::string& pattern) {
     }
     const auto frame = static_cast<int32_t>(at);
     if (auto opened = open_at(frame, output_path(pattern, frame)); !opened) return opened;
-    if (!ahead_ || frame == std::numeric_limits<int32_t>::max()) continue;
+    if (!ahead || frame == std::numeric_limits<int32_t>::max()) continue;
     std::string next = output_path(pattern, frame + 1);
     if (opened_.contains(next) || !assets_.exists(next)) continue;
     if (auto opened = open_at(frame + 1, std::move(next)); !opened) return opened;

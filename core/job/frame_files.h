@@ -30,10 +30,11 @@ class FileSequenceOpener {
  public:
   FileSequenceOpener(const Job& job, AssetResolver& assets);
 
-  /// The files of `pattern` that the job's frames look at. The one after a frame may be missing, if
+  /// The files of `pattern` that the job's frames look at; of the next frame's only where `files`
+  /// says so and looks_at_next_frame(). The one after a frame may be missing, if
   /// it is no frame of the job: a mesh then stands still. Error: the first file that cannot be
   /// opened, with its frame; or all sequences together have more than a million files.
-  Status open(const std::string& pattern);
+  Status open(const std::string& pattern, FrameFiles files);
 
  private:
   Status open_at(int32_t frame, std::string file);

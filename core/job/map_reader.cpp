@@ -237,15 +237,15 @@ void MapReader::file(std::string_view key, std::string& target) {
                                        name.size(), kLongestFileName));
   }
   target = context_.job_relative(name, where);
-  context_.files.push_back({target, where, fmt::format("{} of {}", key, what_), false,
+  context_.files.push_back({target, where, fmt::format("{} of {}", key, what_), std::nullopt,
                             context_.origins.script_at(where)});
 }
 
-void MapReader::frame_file(std::string_view key, std::string& target) {
+void MapReader::frame_file(std::string_view key, std::string& target, FrameFiles files) {
   const size_t before = context_.files.size();
   file(key, target);
   if (listing()) tell(key, {.takes = "file or sequence"});
-  if (context_.files.size() > before) context_.files.back().per_frame = true;
+  if (context_.files.size() > before) context_.files.back().per_frame = files;
 }
 
 bool MapReader::numbers(std::string_view key, std::span<float> target, const Range& range) {

@@ -91,9 +91,9 @@ class MapReader {
   void texture(std::string_view key, std::string& target);
   /// A file, relative to where it is written; that it opens is checked at the end.
   void file(std::string_view key, std::string& target);
-  /// The file of a mesh, which may be one for each frame, relative to where it is written; that it
-  /// opens is checked at the end.
-  void frame_file(std::string_view key, std::string& target);
+  /// A file, or one for each frame, of which a frame looks at `files`, relative to where it is
+  /// written; that they open is checked at the end.
+  void frame_file(std::string_view key, std::string& target, FrameFiles files);
   /// A list of exactly as many numbers as `target` has.
   bool numbers(std::string_view key, std::span<float> target, const Range& range);
   bool integers(std::string_view key, std::span<int32_t> target, int64_t low, int64_t high);

@@ -125,7 +125,7 @@ struct ObjectDesc {
  private:
   template <class Self, class Visitor>
   static void fields_of_shape(Self& self, Visitor& visit) {
-    if (self.shape == "mesh") visit.frame_file("mesh", self.mesh);
+    if (self.shape == "mesh") visit.frame_file("mesh", self.mesh, FrameFiles::own_and_next);
     visit.enter_section("objects.shapes");
     visit.map("emit", "objects.emit", self.emit);
     visit.enter_section("objects." + self.shape);

@@ -31,8 +31,8 @@ struct FileUse {
   std::string reference;  ///< relative to the job's folder
   SourceLocation where;
   std::string label;
-  bool per_frame = false;  ///< there may be one for each frame (is_file_sequence)
-  std::string script{};    ///< that names it, and may not name every file; empty: the job does
+  std::optional<FrameFiles> per_frame{};  ///< where there may be one for each (is_file_sequence)
+  std::string script{};  ///< that names it, and may not name every file; empty: the job does
 };
 
 /// A file that the job writes.

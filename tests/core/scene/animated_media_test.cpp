@@ -4,6 +4,7 @@
 #include <string>
 
 #include "core/job/parse.h"
+#include "core/job/render_key.h"
 #include "core/media/write_vdb.h"
 #include "core/scene/build_scene.h"
 #include "core/scene/volume_makers.h"
@@ -86,6 +87,25 @@ TEST_F(AnimatedMedia, FilesOfFramesAreTheirsAndLeaveNothingBehind) {
   const std::weak_ptr<const DensityField> gone = third;
   third.reset();
   EXPECT_TRUE(gone.expired());
+}
+
+// Neither what happens while the shutter is open nor the layer `motion` looks at the next frame's.
+TEST_F(AnimatedMedia, OnlyTheFilesOfItsFramesAreOpened) {
+  for (const std::string name : {"fire.1.vdb", "fire.2.vdb", "fire.3.vdb"}) assets_.add(name, "");
+  RecordingResolver records(assets_);
+  Diagnostics diagnostics;
+  const Job job = parse_job(
+      "hyades: 1\nframes: {range: 1-2, shutter: 0.5}\n"
+      "media: {m: {absorption: 1, density: {vdb: fire.#.vdb}}}\n"
+      "objects: {ball: {shape: sphere, interior: m}}\noutputs: [{file: a.#.exr, layers: "
+      "[motion]}]\n",
+      "job.yaml", records, diagnostics);
+  EXPECT_EQ(diagnostics.to_string(), "");
+  ASSERT_EQ(records.records().size(), 2U);
+  auto changed = records.records();
+  changed[1].sha256 = "other";
+  EXPECT_EQ(render_key(job, 1, changed), render_key(job, 1, records.records()));
+  EXPECT_NE(render_key(job, 2, changed), render_key(job, 2, records.records()));
 }
 
 TEST_F(AnimatedMedia, FilesOfFramesThatAreMissingAreNamed) {
