@@ -105,7 +105,7 @@ std::optional<BsdfSample> RandomWalk::scatter(const ShadedSurface& surface,
   segment_.specular = sample->delta;
   segment_.pdf = sample->delta ? 1.0 : static_cast<double>(sample->pdf);
   segment_.pdf_across = 0.0;
-  if (kind_.mode == TransportMode::radiance) eta_scale_ *= sample->eta * sample->eta;
+  if (is_scaled(kind_.mode, sample->scale_radiance)) eta_scale_ *= sample->eta * sample->eta;
   if (!survives(u.w)) return std::nullopt;
   const SurfacePoint& point = surface.point();
   if (glm::dot(wo, point.ng) * glm::dot(sample->wi, point.ng) < 0.0F)

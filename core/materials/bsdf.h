@@ -17,13 +17,21 @@ namespace hyades::core {
 /// by the squared ratio of indices, importance not) it decides; never defaulted.
 enum class TransportMode { radiance, importance };
 
+/// Whether what is carried in `mode` changes by 1 / eta^2 where it is refracted into another
+/// index: radiance does; where `scale_radiance` is off, what has to change in its stead so that
+/// paths from both ends agree is importance.
+inline bool is_scaled(TransportMode mode, bool scale_radiance) {
+  return (mode == TransportMode::radiance) == scale_radiance;
+}
+
 struct BsdfSample {
-  Rgb weight{0.0F};           ///< f |cos theta_i| / pdf
-  float pdf = 0.0F;           ///< per solid angle; of a delta lobe: its discrete probability
-  Vec3 wi{0.0F, 0.0F, 1.0F};  ///< local, unit
-  bool delta = false;         ///< from a delta lobe: evaluate() and pdf() know nothing of it
-  bool transmitted = false;   ///< wi is on the other side of the surface than wo
-  float eta = 1.0F;           ///< index of the side of wi over that of wo (1 unless refracted)
+  Rgb weight{0.0F};            ///< f |cos theta_i| / pdf
+  float pdf = 0.0F;            ///< per solid angle; of a delta lobe: its discrete probability
+  Vec3 wi{0.0F, 0.0F, 1.0F};   ///< local, unit
+  bool delta = false;          ///< from a delta lobe: evaluate() and pdf() know nothing of it
+  bool transmitted = false;    ///< wi is on the other side of the surface than wo
+  float eta = 1.0F;            ///< index of the side of wi over that of wo (1 unless refracted)
+  bool scale_radiance = true;  ///< see is_scaled()
 };
 
 /// What light does at a surface point. Local coordinates: z is the shading normal on the shape's

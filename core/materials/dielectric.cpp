@@ -49,7 +49,8 @@ class DielectricBsdf final : public DeltaBsdf {
                       .wi = {-wo.x / eta, -wo.y / eta, wo.z < 0.0F ? cos_t : -cos_t},
                       .delta = true,
                       .transmitted = true,
-                      .eta = eta};
+                      .eta = eta,
+                      .scale_radiance = scale_radiance_};
   }
 
   Rgb albedo(const Vec3& wo) const override {

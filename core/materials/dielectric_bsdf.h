@@ -5,13 +5,6 @@
 /// BSDFs of glass at one place, made in `arena`, for materials that are made of it.
 namespace hyades::core {
 
-/// Whether what is carried in `mode` changes by 1 / eta^2 where it is refracted into another
-/// index: radiance does; where `scale_radiance` is off, what has to change in its stead so that
-/// paths from both ends agree is importance.
-inline bool is_scaled(TransportMode mode, bool scale_radiance) {
-  return (mode == TransportMode::radiance) == scale_radiance;
-}
-
 /// Smooth interface; `ior` is the index of the side z < 0 over that of the other. Tints within
 /// 0..1.
 const Bsdf* smooth_dielectric_bsdf(float ior, const Rgb& transmission, const Rgb& reflection,

@@ -77,6 +77,7 @@ class RoughDielectricBsdf final : public Bsdf {
     }
     s.transmitted = true;
     s.eta = eta;
+    s.scale_radiance = scale_radiance_;
     const float seen = facets_.both_visible(o, above(i)) / facets_.visible(o);
     s.weight = transmission_ * ((1.0F - reflectance) / (1.0F - p_reflect) * seen);
     if (is_scaled(mode, scale_radiance_)) s.weight *= 1.0F / (eta * eta);
@@ -197,6 +198,7 @@ class FullDielectricBsdf final : public Bsdf {
       s.transmitted = drawn->transmitted;
     }
     if (s.transmitted) s.eta = index_beyond(wo, ior_);
+    s.scale_radiance = scale_radiance_;
     s.pdf = pdf(p, wo, s.wi, mode);
     if (!(s.pdf > 0.0F)) return std::nullopt;
     s.weight = evaluate(wo, s.wi, mode) / s.pdf;
