@@ -265,6 +265,8 @@ def file(key: Key, value: Any) -> Any:
 
 def file_or_sequence(key: Key, value: Any) -> Any:
     if isinstance(value, Mapping) and value and all(isinstance(frame, int) for frame in value):
+        if len({isinstance(one, (str, os.PathLike)) for one in value.values()}) > 1:
+            raise refuse("paths for all frames, or what is written for all of them")
         return {frame: file(key, one) for frame, one in value.items()}
     return file(key, value)
 

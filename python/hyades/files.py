@@ -29,6 +29,8 @@ class JobFiles:
     def reference(self, value: Any) -> str:
         """What the job calls a file: a path, something with encode(), an array, or those by frame."""
         if isinstance(value, (str, os.PathLike)):
+            if "#" in os.fspath(value) and os.path.isfile(value):
+                return self._copy(os.path.abspath(value))
             path = os.path.relpath(os.path.abspath(value), os.path.abspath(self.folder))
             self.named.append(Path(path).as_posix())
             return self.named[-1]
@@ -43,30 +45,39 @@ class JobFiles:
         self._known[id(value)] = (value, name)  # kept, so that its identity stays its own
         return name
 
+    def _copy(self, path: str) -> str:
+        """A copy of a file whose own name would mean one for each frame."""
+        stat = os.stat(path)
+        name = f"{_FOLDER}/{_digest(f'{path} {stat.st_size} {stat.st_mtime_ns}'.encode())}{os.path.splitext(path)[1]}"
+        self.made[name] = Path(path)
+        return name
+
     def _sequence(self, values: Mapping[int, Any]) -> str:
-        """A file for each frame; the name is that of all their contents."""
+        """A file for each frame; the name is that of their frames and contents."""
         paths = {frame: os.path.abspath(value) for frame, value in values.items() if isinstance(value, (str, os.PathLike))}
         if len(paths) == len(values):
             return self._sequence_of_paths(paths)
         encoded = {frame: _encoded(value) for frame, value in values.items()}
         ends = {end for _, end in encoded.values()}
         _one_kind(ends)
-        all_digest = _digest(b"".join(hashlib.sha256(data).digest() for data, _ in encoded.values()))
+        told = [f"{frame} {hashlib.sha256(data).hexdigest()}\n" for frame, (data, _) in encoded.items()]
+        all_digest = _digest("".join(told).encode())
         end = ends.pop()
         for frame, (data, _) in encoded.items():
             self.made[f"{_FOLDER}/{all_digest}.{frame:04d}{end}"] = data
         return f"{_FOLDER}/{all_digest}.####{end}"
 
     def _sequence_of_paths(self, paths: Mapping[int, str]) -> str:
-        """Files where they are if their names are those of one pattern, else copies of them that are: named by the
+        """Files where they are if their names are those of one pattern, else copies of them that are: named by frames and the
         files' names, sizes and times, as they may be large."""
         pattern = _pattern(paths)
         if pattern is not None:
             return self.reference(pattern)
         ends = {os.path.splitext(path)[1] for path in paths.values()}
         _one_kind(ends)
-        stats = [(path, os.stat(path)) for path in paths.values()]
-        all_digest = _digest("".join(f"{path}\n{stat.st_size}\n{stat.st_mtime_ns}\n" for path, stat in stats).encode())
+        stats = [(frame, path, os.stat(path)) for frame, path in paths.items()]
+        told = [f"{frame} {stat.st_size} {stat.st_mtime_ns} {path}\n" for frame, path, stat in stats]
+        all_digest = _digest("".join(told).encode())
         end = ends.pop()
         for frame, path in paths.items():
             self.made[f"{_FOLDER}/{all_digest}.{frame:04d}{end}"] = Path(path)
@@ -86,7 +97,9 @@ class JobFiles:
 
 
 def write_whole(path: Path, data: bytes | Path) -> None:
-    """A file of these bytes, or a copy of that one. Nobody sees a part of the file. A link that stands there is replaced, not followed: the folder may have come
+    """Writes a file of bytes, or a copy of another one.
+
+    Nobody sees a part of the file. A link that stands there is replaced, not followed: the folder may have come
     with somebody's scene."""
     temporary = path.with_name(f".{path.name[:200]}.{secrets.token_hex(8)}.part")
     flags = os.O_WRONLY | os.O_CREAT | os.O_EXCL | getattr(os, "O_BINARY", 0)

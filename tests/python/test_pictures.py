@@ -170,6 +170,16 @@ class Meshes(unittest.TestCase):
             self.assertEqual(made, {"0001.vdb": b"fire_0009.vdb", "0002.vdb": b"other.vdb"})
             with self.assertRaises(FileNotFoundError):
                 named({1: "fire_0009.vdb", 2: "nothing.vdb"})
+            named({2: "fire_0009.vdb", 3: "other.vdb"})  # later: no file of the others is replaced
+            self.assertEqual(len(list((folder / "assets").glob("*.vdb"))), 4)
+
+    def test_sequences_at_other_frames_have_other_names(self) -> None:
+        from hyades import objects
+
+        meshes = [hyades.MeshData([[0, 0, 0], [1, 0, 0], [0, size, 0]], [[0, 1, 2]]) for size in (1, 2)]
+        first, later = (objects.Mesh(mesh=dict(enumerate(meshes, start=at))) for at in (1, 2))
+        made = hyades.Job(objects={"first": first, "later": later}).document().files.made
+        self.assertEqual(len(made), 4)
 
 
 if __name__ == "__main__":
