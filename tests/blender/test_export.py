@@ -44,6 +44,29 @@ class NotThere(ExportTest):
         self.assertIn("camera 'Camera': its scale mirrors the picture", said)
         self.assertIn("object 'Smoke': only volumes of files are supported", said)
 
+    def test_what_sees_and_moves_otherwise_is_told(self) -> None:
+        self.assertEqual(self.export()[1], "")
+        parent = bpy.data.objects.new("Rig", None)
+        parent.scale = (1, 3, 1)
+        self.scene.collection.objects.link(parent)
+        self.scene.camera.parent = parent
+        self.assertIn("camera 'Camera': what it is parented to shears it", self.export()[1])
+        self.scene.camera.parent = None
+        cube = bpy.data.objects["Cube"]
+        cube.driver_add("location", 0).driver.expression = "no_such_name + 1"
+        bpy.context.view_layer.update()
+        self.assertIn("object 'Cube': its driver of location is not computed", self.export()[1])
+        cube.driver_remove("location", 0)
+        cycles = getattr(self.scene, "cycles", None)
+        if cycles is None:
+            self.skipTest("Cycles is not here")
+        self.scene.render.use_simplify = cycles.use_camera_cull = cube.cycles.use_camera_cull = True
+        self.assertIn("object 'Cube': it is there wherever it is: Simplify's culling", self.export()[1])
+        self.scene.render.use_simplify = False
+        cycles.feature_set, cube.cycles.use_adaptive_subdivision = "EXPERIMENTAL", True
+        cube.modifiers.new("Finer", "SUBSURF")
+        self.assertIn("object 'Cube': Adaptive Subdivision is left out", self.export()[1])
+
     def test_portals_do_not_shine(self) -> None:
         lamp = bpy.data.objects["Light"]
         lamp.data.type = "AREA"

@@ -36,7 +36,7 @@ class Copies(ExportTest):
         job, said = self.export()
         copies = [body for name, body in job.objects.items() if name.startswith("Thing")]
         self.assertEqual([round(float(body.material.color.file.max()), 3) for body in copies], [0, 2, 4, 6])
-        self.assertEqual(said, "material 'Place' > node 'Diffuse BSDF': 'Color' is held at 1: nothing reflects more light than it gets")
+        self.assertEqual(said, "material 'Place' > node 'Diffuse BSDF': 'Color' is held at 1 where it is above: nothing reflects more light than it gets")
         with mock.patch.object(objects, "_MOST_OWN", 2):
             job, said = self.export()
         self.assertEqual(len(job.objects["Thing"].places.matrices), 3)

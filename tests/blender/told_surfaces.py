@@ -51,12 +51,13 @@ class Surfaces(ExportTest):
 
     def test_metal_loses_what_it_loses_in_blender(self) -> None:
         node = self.shaded("ShaderNodeBsdfPrincipled")
-        for kind, metallic, keeps in (("GGX", 1, False), ("GGX", 0, True), ("MULTI_GGX", 1, True)):
+        for kind, metallic, keeps in (("GGX", 1, False), ("MULTI_GGX", 1, True)):
             node.distribution, node.inputs["Metallic"].default_value = kind, metallic
             self.assertEqual(self.export()[0].objects["Cube"].material.multiple_scattering, keeps)
 
     def test_indices_below_one_are_told(self) -> None:
         node = self.shaded("ShaderNodeBsdfPrincipled")
+        node.inputs["Transmission Weight" if _IS_NEW else "Transmission"].default_value = 1
         for ior, told in ((1.2, False), (0.75, True)):
             node.inputs["IOR"].default_value = ior
             self.assertEqual("'IOR' is held at 1" in self.export()[1], told)
@@ -75,6 +76,37 @@ class Surfaces(ExportTest):
             self.assertEqual(isinstance(made, textures.Image), is_computed, made)
         math.operation, math.inputs[0].default_value = "ADD", -1
         self.assertIsInstance(self.export()[0].objects["Cube"].emit.color, textures.Image)
+
+    def test_colors_that_may_be_too_bright_are_held(self) -> None:
+        node = self.shaded("ShaderNodeBsdfDiffuse")
+        tree = node.id_data
+        checker = tree.nodes.new("ShaderNodeTexChecker")
+        tree.links.new(checker.outputs["Color"], node.inputs["Color"])
+        for brightest, told in ((0.9, False), (1.5, True)):
+            checker.inputs["Color1"].default_value = (brightest, 0.2, 0.2, 1)
+            job, said = self.export()
+            self.assertEqual("'Color' is held at 1" in said, told)
+            self.assertEqual(isinstance(job.objects["Cube"].material.color, textures.Min), told)
+        mesh = bpy.data.objects["Cube"].data
+        colors = mesh.color_attributes.new("Bright", "FLOAT_COLOR", "POINT")
+        attribute = tree.nodes.new("ShaderNodeVertexColor")
+        attribute.layer_name = "Bright"
+        tree.links.new(attribute.outputs["Color"], node.inputs["Color"])
+        for brightest, told in ((0.9, False), (2.0, True)):
+            colors.data.foreach_set("color", [brightest, 0.2, 0.2, 1] * len(mesh.vertices))
+            self.assertEqual("'Color' is held at 1" in self.export()[1], told)
+
+    def test_glass_is_no_flesh_and_no_metal(self) -> None:
+        node = self.shaded("ShaderNodeBsdfPrincipled")
+        through, below = (("Transmission Weight", "Subsurface Weight") if _IS_NEW else ("Transmission", "Subsurface"))
+        node.inputs[below].default_value = 1
+        for share, is_told in ((0, False), (0.5, True), (1, False)):
+            node.inputs[through].default_value = share
+            job, said = self.export()
+            self.assertEqual(job.objects["Cube"].material.subsurface is not None, share == 0)
+            self.assertEqual("with both Subsurface is left out" in said, is_told)
+        node.inputs["Metallic"].default_value = 0.4
+        self.assertIn("what is metal and glass at once", self.export()[1])
 
     def test_inputs_that_nobody_knows_are_told(self) -> None:
         node = self.shaded("ShaderNodeBsdfPrincipled")

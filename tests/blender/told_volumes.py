@@ -98,6 +98,21 @@ class Volumes(ExportTest):
             self.assertEqual({frame: str(path) for frame, path in made.items()}, {f: str(p) for f, p in expected.items()})
             self.assertEqual("\n".join(map(str, exported.complaints)), "")
 
+    def test_nothing_is_there_before_a_sequence(self) -> None:
+        body, _ = self.smoke()
+        body.data.is_sequence, body.data.frame_duration, body.data.frame_start = True, 1, 3
+        job, said = self.export()
+        self.assertEqual(("Smoke" in job.objects, said), (False, ""))
+
+    def test_names_that_would_mean_a_sequence_are_copied(self) -> None:
+        body, _ = self.smoke()
+        odd = self.folder / "take #1"
+        odd.mkdir()
+        body.data.filepath = str(self.path.rename(odd / self.path.name))
+        job, _ = self.export()
+        job.write(self.folder / "job.yaml")
+        self.assertRegex((self.folder / "job.yaml").read_text("utf-8"), r"vdb: assets/[0-9a-f]{16}\.vdb")
+
     def test_phase_functions_are_the_jobs_or_told(self) -> None:
         made = bpy.data.materials.new("Haze")
         made.use_nodes = True

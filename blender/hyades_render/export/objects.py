@@ -75,12 +75,14 @@ def add_objects(context: Context) -> None:
     """Adds what has a surface, and the lamps, to the job."""
     copies: dict[Any, _Copies] = {}
     flags, nearness = LayerFlags(context), Nearness()
+    some_become_meshes = False  # of millions of copies each question takes its time
     for instance in context.depsgraph.object_instances:
         # Blender may give the object of an instance for this step alone: all is taken from it here.
         object = instance.object
         if object.type in _BECOME_MESHES:
+            some_become_meshes = True
             continue
-        is_copy = instance.is_instance and not _is_own_mesh(instance)
+        is_copy = instance.is_instance and not (some_become_meshes and _is_own_mesh(instance))
         if is_copy:  # there may be millions
             data = object.data
             is_indirect = flags.is_indirect(instance)
@@ -155,7 +157,7 @@ def _tell_of_settings(context: Context, object: Any) -> None:
         context.complain(f"object '{object.name}'", "motion blur is for all: it is blurred where it changes its shape")
     if getattr(cycles, "shadow_terminator_offset", 0.0) > 0:
         context.complain(f"object '{object.name}'", "its Shadow Terminator offset is left out: edges of shadows have another remedy")
-    if _is_culled(context.scene, cycles):
+    if object.type == "MESH" and _is_culled(context.scene, cycles):
         context.complain(f"object '{object.name}'", "it is there wherever it is: Simplify's culling leaves it out where it is far or unseen")
     if _is_cut_finer(context.scene, object):
         what = "Adaptive Subdivision is left out: it is as fine as its Subdivision Surface is with Levels Render"

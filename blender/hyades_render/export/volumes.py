@@ -46,6 +46,8 @@ def add_volume(context: Context, object: Any, matrix: Any) -> None:
         return
     is_read = data.grids.load()  # a sequence's file of the frame is not known before
     path = _file(data)
+    if path is None and data.is_sequence and not data.grids.frame_filepath:
+        return  # nothing is there before and after a sequence
     if path is None:
         context.complain(where, f"there is no file {data.filepath}, expected .vdb or .nvdb, or a link to one")
         return
@@ -55,6 +57,8 @@ def add_volume(context: Context, object: Any, matrix: Any) -> None:
     grids = {grid.name: grid for grid in data.grids} if is_read else {}
     kinds = {name: grid.data_type for name, grid in grids.items()} if is_read else None
     voxels = {name: axes.array(grid.matrix_object)[:3, :3] for name, grid in grids.items()}
+    if context.scene.render.use_motion_blur and data.velocity_grid in grids:
+        context.complain(where, f"it stands still while the shutter is open: its grid '{data.velocity_grid}' is left out")
     slot = object.material_slots[0].material if len(object.material_slots) else None
     found = _shader(context, context.override or slot)
     if found is None:

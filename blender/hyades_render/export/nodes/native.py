@@ -50,7 +50,7 @@ def image(translator: Translator, output: Output) -> Value:
         made.filter = "nearest"
     if output.socket.identifier == "Alpha":
         made.channel = "alpha"
-    return made
+    return made if node.image.is_float else values.bounded(made, 1.0)
 
 
 @native("VERTEX_COLOR")
@@ -72,16 +72,20 @@ def attribute(translator: Translator, output: Output) -> Value:
 
 def _color_attribute(translator: Translator, output: Output, name: str) -> Value:
     translator.is_of_surface = True
-    if translator.surface is None or translator.surface.surface.color(name) is None:
+    colors = translator.surface.surface.color(name) if translator.surface is not None else None
+    if colors is None:
         return 0.0  # as Cycles has it
     if translator.color_attribute not in (None, name):
         raise Inexpressible(output, "this is the second colour attribute of one material")
     translator.color_attribute = name
     kind = output.socket.identifier
     if kind == "Fac":  # of the node Attribute: the mean of the three
-        parts = [textures.Channel(input=textures.VertexColor(), channel=name) for name in ("red", "green", "blue")]
+        whole = values.bounded(textures.VertexColor(), float(colors[:, :3].max(initial=0.0)))
+        parts = [textures.Channel(input=whole, channel=name) for name in ("red", "green", "blue")]
         return values.product(values.total(values.total(parts[0], parts[1]), parts[2]), 1 / 3)
-    return textures.VertexColor(channel="alpha" if kind == "Alpha" else "color")
+    channel = slice(3, 4) if kind == "Alpha" else slice(3)
+    made = textures.VertexColor(channel="alpha" if kind == "Alpha" else "color")
+    return values.bounded(made, float(colors[:, channel].max(initial=0.0)))
 
 
 @native("TEX_CHECKER")

@@ -37,17 +37,19 @@ def principled(translator: Translator, output: Output) -> Closure:
     made = materials.Principled(**_keys(translator, output), **normal_keys(translator, output))
     (_since_4_0 if is_new else _until_3_6)(translator, output, made)
     _anisotropy(translator, output, made)
-    medium_keys = _subsurface(translator, output, is_new)
-    if medium_keys is not None:
-        made.subsurface = medium_keys
+    if not values.is_constant(made.transmission, 1):
+        made.subsurface = _subsurface(translator, output, is_new)
+    if made.subsurface is not None and not values.is_constant(made.transmission, 0):
+        made.subsurface = None
+        translator.complain(output.node, "light goes through or scatters below the surface: with both Subsurface is left out")
     strength = bright(translator, output, translator.number(output.input("Emission Strength"), 0.0))
     emission = values.product(translator.value(output.input("Emission Color", "Emission")), strength)
     if is_new and not values.is_constant(emission, 0):
         emission = values.product(emission, left_of_emission(translator, output, made))
-    if not keeps_light(output) and not (values.is_constant(made.metallic, 0) and values.is_constant(made.transmission, 0)):
-        made.multiple_scattering = False
-    if not values.is_constant(made.transmission, 0):
-        made.scale_radiance = False
+    made.multiple_scattering = keeps_light(output)
+    made.scale_radiance = False
+    if not values.is_constant(made.transmission, 0) and not (values.is_constant(made.metallic, 0) or values.is_constant(made.metallic, 1)):
+        translator.complain(output.node, "what is metal and glass at once lets more light through than in Cycles")
     tell_of_inputs(translator, output, made)
     alpha = held(translator.number(output.input("Alpha"), 1.0))
     return Closure(made, values.product(emission, alpha), alpha)
@@ -75,7 +77,6 @@ def _ior(translator: Translator, output: Output) -> float:
 
 def _until_3_6(translator: Translator, output: Output, made: materials.Principled) -> None:
     """Specular is 0.08 of light at most, whatever the IOR; tints go towards the base's hue; a coat counts a quarter."""
-    ior = _ior(translator, output)
     specular = translator.number(output.input("Specular"), 0.5)
     if values.is_constant(made.transmission, 0):
         if values.is_texture(specular):
@@ -84,7 +85,7 @@ def _until_3_6(translator: Translator, output: Output, made: materials.Principle
             root = math.sqrt(min(0.08 * max(specular, 0.0), 0.99))
             made.ior = max((1 + root) / (1 - root), 1.0)
     else:
-        made.ior = ior
+        made.ior = _ior(translator, output)
     tint = held(translator.number(output.input("Specular Tint")))
     if not values.is_constant(tint, 0):
         made.specular_tint = _towards(translator, output, made, tint)

@@ -5,6 +5,8 @@ from __future__ import annotations
 import math
 from typing import Any, Callable, Optional
 
+from hyades import textures
+
 from ..context import Context
 from . import graph, values
 from .graph import Input, Output
@@ -73,7 +75,9 @@ class Translator:
         """What an input is, as what things make of light: 0 to 1. Complains where it is known that it may be beyond."""
         value = self.value(end, default)
         if end is not None and 1.00001 < values.most(value) < math.inf:
-            self.complain(end.socket.node, f"'{end.socket.name}' is held at 1: nothing reflects more light than it gets")
+            self.complain(end.socket.node, f"'{end.socket.name}' is held at 1 where it is above: nothing reflects more light than it gets")
+            if values.is_texture(value) and not isinstance(value, textures.Image):
+                return textures.Min(a=value, b=1)  # as reflectance the job refuses what is brighter
         return values.held(value)
 
     def constant(self, end: Optional[Input], default: Value = 0.0) -> Value:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from typing import Any, Union
+from weakref import WeakKeyDictionary
 
 import numpy
 from hyades import textures
@@ -12,8 +13,8 @@ Value = Union[float, "tuple[float, float, float]", textures.Texture]
 """A number; linear [r, g, b]; or a texture."""
 
 _LUMINANCE = (0.2126, 0.7152, 0.0722)
-_OF_LIGHT = (".exr", ".hdr", ".tif", ".tiff")
-"""Files that may hold numbers above 1."""
+_LIMITS: WeakKeyDictionary[textures.Texture, float] = WeakKeyDictionary()
+"""What no part of some textures is above."""
 
 
 def is_texture(value: Value) -> bool:
@@ -116,18 +117,24 @@ def quotient(a: Value, b: Value) -> Value:
     return tuple(p / q if q else 0.0 for p, q in zip(x, y))  # type: ignore[return-value]
 
 
+def bounded(texture: textures.Texture, limit: float) -> textures.Texture:
+    """A texture of which it is known that no part of it is above `limit`."""
+    _LIMITS[texture] = limit
+    return texture
+
+
 def most(value: Any) -> float:
-    """What no part of a value is above, as far as it is known."""
+    """What no part of a value is above, as far as it is known; else infinity."""
     if not is_texture(value):
         return max(color(value))
+    if value in _LIMITS:
+        return _LIMITS[value]
     pixels = getattr(value, "file", None)
-    if isinstance(pixels, numpy.ndarray) and pixels.dtype.kind == "f":
-        return float(pixels.max(initial=0.0))
-    if isinstance(value, textures.Image):
-        return math.inf if str(value.file).lower().endswith(_OF_LIGHT) else 1.0
+    if isinstance(pixels, numpy.ndarray):
+        return float(pixels.max(initial=0.0)) if pixels.dtype.kind == "f" else 1.0
     if isinstance(value, textures.Ramp):
         return max(map(most, value.stops.values()))
-    if isinstance(value, (textures.Invert, textures.VertexColor)):
+    if isinstance(value, textures.Invert):
         return 1.0
     parts = [most(part) for part in (getattr(value, name, None) for name in ("a", "b", "input", "factor")) if part is not None]
     if isinstance(value, textures.Add):
@@ -136,6 +143,8 @@ def most(value: Any) -> float:
         return parts[0] * parts[1]
     if isinstance(value, textures.Min):
         return min(parts)
+    if isinstance(value, textures.Power):
+        return max(parts[0] ** value.exponent, 1.0) if math.isfinite(parts[0]) else parts[0]
     is_within_parts = isinstance(value, (textures.Checker, textures.Mix, textures.Max, textures.Channel))
     return max(parts) if is_within_parts else math.inf
 
