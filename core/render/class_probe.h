@@ -31,7 +31,7 @@ std::string sources_id();
 
 /// A film of the built-in probe scene: a mesh that stands, one that moves (an instance), coplanar
 /// duplicates, quadrics, copies by a file, strands, glass with a medium in it, skin, smoke, metal,
-/// noise in space and time, bump, an image, a sky, a lamp, a lens, motion blur. About 200,000 rays,
+/// noise in space and time, bump, an image, a sky, a lamp, a lens, motion blur. About 90,000 rays,
 /// some 0.2 s of one core. The same for any `threads` >= 1.
 /// Errors: native, and Embree does not run here.
 Result<Film> render_class_probe(RenderClass which, int threads = 1);

@@ -113,7 +113,7 @@ hyades: 1
 name: class-probe
 frames: {range: 1-2, fps: 24, shutter: 0.5}
 film: {size: [48, 32], filter: {type: blackman-harris, radius: 1.5}}
-sampling: {samples: 24, seed: 20}
+sampling: {samples: 12, seed: 20}
 integrator: {type: path, max_depth: 8}
 camera: {look_from: [0.4, 2.1, 4.6], look_at: [0, 0.5, 0], fov: 38, aperture: {radius: 0.03, blades: 7}}
 textures:
@@ -129,7 +129,7 @@ materials:
   frost: {type: dielectric, ior: 1.4, roughness: 0.3}
   card: {type: lambert, color: faded}
   red: {type: lambert, color: [0.8, 0.1, 0.05]}
-  skin: {type: principled, base_color: [0.8, 0.5, 0.3], roughness: 0.4, coat: 0.5, subsurface: {color: [0.9, 0.6, 0.4], radius: 0.05}}
+  skin: {type: dielectric, ior: 1.4, subsurface: {color: [0.9, 0.6, 0.4], radius: 0.05}}
   fur: {type: hair, color: [0.4, 0.25, 0.1]}
   air: {type: "null"}
   blend: {type: mix, first: red, second: gold, amount: 0.4}
