@@ -1,17 +1,10 @@
-#include <cstdio>
-#include <filesystem>
 #include <string>
-#include <system_error>
 
 #include <CLI/CLI.hpp>
 
 #include "cli/command_line.h"
 #include "cli/film_commands.h"
-#include "cli/shown_output.h"
-#include "cli/written_file.h"
-#include "core/base/fp_mode.h"
-#include "core/finish/picture.h"
-#include "core/image/read_image.h"
+#include "cli/rewrite_picture.h"
 
 namespace hyades::cli {
 namespace {
@@ -22,29 +15,6 @@ struct ConvertOptions {
   ShownOutput shown;
   WrittenFile written;
 };
-
-int convert(const ConvertOptions& options) {
-  const core::FpMode mode;
-  const auto refuse = [](const std::string& message) {
-    std::fprintf(stderr, "hyades convert: %s\n", message.c_str());
-    return kExitRefused;
-  };
-  std::error_code none;
-  if (std::filesystem::equivalent(options.input, options.shown.output.file, none)) {
-    return refuse(options.input + ": would be replaced by itself, expected another file as -o");
-  }
-  if (const auto may = options.written.check(options.shown.output.file); !may) {
-    return refuse(may.error().message);
-  }
-  const auto picture = core::read_image_file(options.input);
-  if (!picture) return refuse(picture.error().message);
-  core::OutputDesc output = options.shown.desc(options.input);
-  if (options.layer != "beauty") output.layers = {options.layer};
-  const auto written = core::write_output(output, *picture, output.file);
-  if (!written) return refuse(written.error().in(options.input).message);
-  options.written.tell(output.file);
-  return 0;
-}
 
 }  // namespace
 
@@ -62,7 +32,11 @@ int convert_command(int argc, char** argv) {
       "'hyades info' tells which layers there are.\n"
       "exit status: 0 fine, 2 wrong arguments, or a picture that cannot be read or written.");
   if (const auto status = parse_command_line(app, argc, argv)) return *status;
-  return convert(options);
+  const auto choose = [&](const core::Image&, core::OutputDesc& output) {
+    if (options.layer != "beauty") output.layers = {options.layer};
+    return core::Status();
+  };
+  return rewrite_picture("hyades convert", options.input, options.shown, options.written, choose);
 }
 
 }  // namespace hyades::cli

@@ -203,10 +203,11 @@ core::Status JobFrames::check_picture(const core::FilmInfo& info) const {
                     info.frame, core::printable(info.job_name), loaded_.job.name)};
   }
   core::Job other = loaded_.job;
-  const bool is_native = other.render.render_class == core::RenderClass::native;
-  other.render.render_class = is_native ? core::RenderClass::portable : core::RenderClass::native;
+  core::RenderClass& which = other.render.render_class;
+  which =
+      which == core::RenderClass::native ? core::RenderClass::portable : core::RenderClass::native;
   if (core::render_key(other, info.frame, assets_) == info.render_key) {
-    const std::string& name = core::kRenderClassNames[is_native ? 1 : 0];
+    const std::string& name = core::kRenderClassNames[static_cast<size_t>(which)];
     return core::Error{
         fmt::format("frame {}: its films were rendered in the class {}; --class {} takes them",
                     info.frame, name, name)};

@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <charconv>
-#include <cstdio>
-#include <filesystem>
+#include <cstddef>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -13,18 +12,14 @@
 
 #include "cli/command_line.h"
 #include "cli/film_commands.h"
-#include "cli/shown_output.h"
-#include "cli/written_file.h"
-#include "core/base/fp_mode.h"
+#include "cli/rewrite_picture.h"
 #include "core/base/text.h"
 #include "core/base/vec.h"
-#include "core/finish/picture.h"
-#include "core/image/read_image.h"
+#include "core/film/layout.h"
 
 namespace hyades::cli {
 namespace {
 
-constexpr std::string_view kGroupChannel = "light_group_";
 constexpr std::string_view kRed = ".R";
 constexpr const char* kExpected = "expected NAME=FACTOR or NAME=R,G,B, from 0 to 1e6";
 constexpr float kMostFactor = 1e6F;
@@ -67,11 +62,11 @@ core::Result<Factor> read_factor(const std::string& text) {
 }
 
 std::vector<std::string> groups_of(const core::Image& picture) {
+  const std::string prefix = core::group_channel("");
   std::vector<std::string> names;
   for (const std::string& channel : picture.channels) {
-    if (!channel.starts_with(kGroupChannel) || !channel.ends_with(kRed)) continue;
-    names.push_back(
-        channel.substr(kGroupChannel.size(), channel.size() - kGroupChannel.size() - kRed.size()));
+    if (!channel.starts_with(prefix) || !channel.ends_with(kRed)) continue;
+    names.push_back(channel.substr(prefix.size(), channel.size() - prefix.size() - kRed.size()));
   }
   return names;
 }
@@ -81,8 +76,7 @@ core::Status apply(const Factor& factor, core::Image& picture) {
   for (int c = 0; c < 3; ++c) {
     const std::string color(1, "RGB"[c]);
     const int to = picture.find_channel(color);
-    const int from =
-        picture.find_channel(fmt::format("{}{}.{}", kGroupChannel, factor.group, color));
+    const int from = picture.find_channel(core::group_channel(factor.group) + "." + color);
     if (to < 0 || from < 0) return core::Error{"it has no beauty in colours"};
     for (int y = 0; y < picture.height; ++y) {
       for (int x = 0; x < picture.width; ++x) {
@@ -119,31 +113,6 @@ core::Status relight(const std::vector<std::string>& asked, core::Image& picture
   return {};
 }
 
-int run(const RelightOptions& options) {
-  const core::FpMode mode;
-  const auto refuse = [](const std::string& message) {
-    std::fprintf(stderr, "hyades relight: %s\n", message.c_str());
-    return kExitRefused;
-  };
-  std::error_code none;
-  if (std::filesystem::equivalent(options.input, options.shown.output.file, none)) {
-    return refuse(options.input + ": would be replaced by itself, expected another file as -o");
-  }
-  if (const auto may = options.written.check(options.shown.output.file); !may) {
-    return refuse(may.error().message);
-  }
-  auto picture = core::read_image_file(options.input);
-  if (!picture) return refuse(picture.error().message);
-  if (const auto done = relight(options.groups, *picture); !done) {
-    return refuse(done.error().in(options.input).message);
-  }
-  const core::OutputDesc output = options.shown.desc(options.input);
-  const auto written = core::write_output(output, *picture, output.file);
-  if (!written) return refuse(written.error().in(options.input).message);
-  options.written.tell(output.file);
-  return 0;
-}
-
 }  // namespace
 
 int relight_command(int argc, char** argv) {
@@ -166,7 +135,10 @@ int relight_command(int argc, char** argv) {
       "light_groups] keeps them apart.\n"
       "exit status: 0 fine, 2 wrong arguments, or a picture that cannot be read or written.");
   if (const auto status = parse_command_line(app, argc, argv)) return *status;
-  return run(options);
+  const auto change = [&](core::Image& picture, const core::OutputDesc&) {
+    return relight(options.groups, picture);
+  };
+  return rewrite_picture("hyades relight", options.input, options.shown, options.written, change);
 }
 
 }  // namespace hyades::cli
