@@ -47,40 +47,26 @@ class JobFiles:
 
     def _copy(self, path: str) -> str:
         """A copy of a file whose own name would mean one for each frame."""
-        stat = os.stat(path)
-        name = f"{_FOLDER}/{_digest(f'{path} {stat.st_size} {stat.st_mtime_ns}'.encode())}{os.path.splitext(path)[1]}"
-        self.made[name] = Path(path)
+        data, end = _brought(path)
+        name = f"{_FOLDER}/{_digest(_told(data).encode())}{end}"
+        self.made[name] = data
         return name
 
     def _sequence(self, values: Mapping[int, Any]) -> str:
-        """A file for each frame; the name is that of their frames and contents."""
+        """A file for each frame: those that are there, if their names are those of one pattern; else made ones or copies,
+        named by their frames and contents."""
         paths = {frame: os.path.abspath(value) for frame, value in values.items() if isinstance(value, (str, os.PathLike))}
-        if len(paths) == len(values):
-            return self._sequence_of_paths(paths)
-        encoded = {frame: _encoded(value) for frame, value in values.items()}
-        ends = {end for _, end in encoded.values()}
-        _one_kind(ends)
-        told = [f"{frame} {hashlib.sha256(data).hexdigest()}\n" for frame, (data, _) in encoded.items()]
-        all_digest = _digest("".join(told).encode())
-        end = ends.pop()
-        for frame, (data, _) in encoded.items():
-            self.made[f"{_FOLDER}/{all_digest}.{frame:04d}{end}"] = data
-        return f"{_FOLDER}/{all_digest}.####{end}"
-
-    def _sequence_of_paths(self, paths: Mapping[int, str]) -> str:
-        """Files where they are if their names are those of one pattern, else copies of them that are: named by frames and the
-        files' names, sizes and times, as they may be large."""
-        pattern = _pattern(paths)
+        pattern = _pattern(paths) if len(paths) == len(values) else None
         if pattern is not None:
             return self.reference(pattern)
-        ends = {os.path.splitext(path)[1] for path in paths.values()}
-        _one_kind(ends)
-        stats = [(frame, path, os.stat(path)) for frame, path in paths.items()]
-        told = [f"{frame} {stat.st_size} {stat.st_mtime_ns} {path}\n" for frame, path, stat in stats]
-        all_digest = _digest("".join(told).encode())
+        files = {frame: _brought(value) for frame, value in values.items()}
+        ends = {end for _, end in files.values()}
+        if len(ends) != 1:
+            raise ValueError(f"a file for each frame has to be of one kind, not {sorted(ends)}")
+        all_digest = _digest("".join(f"{frame} {_told(data)}\n" for frame, (data, _) in files.items()).encode())
         end = ends.pop()
-        for frame, path in paths.items():
-            self.made[f"{_FOLDER}/{all_digest}.{frame:04d}{end}"] = Path(path)
+        for frame, (data, _) in files.items():
+            self.made[f"{_FOLDER}/{all_digest}.{frame:04d}{end}"] = data
         return f"{_FOLDER}/{all_digest}.####{end}"
 
     def write(self) -> None:
@@ -158,16 +144,27 @@ def _pattern(paths: Mapping[int, str]) -> str | None:
     return None
 
 
-def _one_kind(ends: set[str]) -> None:
-    if len(ends) != 1:
-        raise ValueError(f"a file for each frame has to be of one kind, not {sorted(ends)}")
-
-
 def _encoded(value: Any) -> tuple[bytes, str]:
     if hasattr(value, "encode"):
         data, end = value.encode()
         return bytes(data), str(end)
     return encode_array(value)
+
+
+def _brought(value: Any) -> tuple[bytes | Path, str]:
+    """What a file holds, or of which file it is a copy; and how its name ends."""
+    if isinstance(value, (str, os.PathLike)):
+        path = os.path.abspath(value)
+        return Path(path), os.path.splitext(path)[1]
+    return _encoded(value)
+
+
+def _told(data: bytes | Path) -> str:
+    """What tells data from others; of files, which may be large, their names, sizes and times."""
+    if isinstance(data, bytes):
+        return hashlib.sha256(data).hexdigest()
+    stat = data.stat()
+    return f"{stat.st_size} {stat.st_mtime_ns} {data}"
 
 
 def _digest(data: bytes) -> str:

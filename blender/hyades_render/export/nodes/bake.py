@@ -7,6 +7,7 @@ from typing import Any
 import numpy
 from hyades import textures
 
+from ..meshes import across
 from . import values
 from .evaluate import Evaluator
 from .graph import Input
@@ -52,7 +53,7 @@ def mean_of(translator: Translator, end: Input) -> values.Value:
     if part is None or not len(part.triangles):
         return default_of(end.socket)
     corners = part.corners()
-    area = numpy.linalg.norm(numpy.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1)
+    area = numpy.linalg.norm(across(corners), axis=1)
     random = numpy.random.default_rng(1)
     chosen = random.choice(len(area), 4096, p=area / area.sum()) if area.sum() > 0 else numpy.zeros(1, int)
     u, v = numpy.sqrt(random.random(len(chosen))), random.random(len(chosen))

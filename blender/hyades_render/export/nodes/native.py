@@ -15,6 +15,7 @@ from .images import image_file
 from .translator import Inexpressible, Translator, native
 from .values import Value, held, is_texture
 
+_BELOW = "textures of the job know no numbers below 0"
 _WRAPS = {"REPEAT": "repeat", "EXTEND": "clamp", "CLIP": "black", "MIRROR": "mirror"}
 
 
@@ -101,7 +102,7 @@ def checker(translator: Translator, output: Output) -> Value:
     # Blender nudges places away from whole numbers, which for the zeros of flat things matters: 0 lies in cell 0.
     nudge = [0.000001 * 0.999999] * 3
     if not (_positive(first) and _positive(second)):
-        raise Inexpressible(output, "textures of the job know no numbers below 0")
+        raise Inexpressible(output, _BELOW)
     return textures.Checker(a=held(second, 0, 1e18), b=held(first, 0, 1e18), scale=[scale * 0.999999] * 3, offset=nudge, mapping=place.mapping())
 
 
@@ -151,7 +152,7 @@ def mix(translator: Translator, output: Output) -> Value:
 def _mixed(output: Output, blend: str, a: Value, b: Value, amount: Value, clamp: bool) -> Value:
     amount = amount if is_texture(amount) else held(values.number(amount))
     if any(map(is_texture, (a, b, amount))) and not (_positive(a) and _positive(b)):
-        raise Inexpressible(output, "textures of the job know no numbers below 0")
+        raise Inexpressible(output, _BELOW)
     if blend == "MIX":
         result = values.mixed(a, b, amount)
     elif blend == "MULTIPLY":
@@ -230,7 +231,7 @@ def _positive(value: Value) -> bool:
 def _inverted(output: Output, value: Value) -> Value:
     """1 - value."""
     if is_texture(value) and values.most(value) > 1:
-        raise Inexpressible(output, "textures of the job know no numbers below 0")
+        raise Inexpressible(output, _BELOW)
     return values.rest(value)
 
 
