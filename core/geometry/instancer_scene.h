@@ -50,7 +50,7 @@ class InstancerScene {
   Bounds bounds_;
 };
 
-/// A instancer in a world: its members are the placements from `first` on.
+/// An instancer in a world: its members are the placements from `first` on.
 struct PlacedInstancer {
   uint32_t first = 0;
   std::shared_ptr<const InstancerScene> scene;

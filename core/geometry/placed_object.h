@@ -16,7 +16,7 @@
 
 namespace hyades::core {
 
-/// Where a copy of a instancer stands at some moment, both ways.
+/// Where a copy of an instancer stands at some moment, both ways.
 struct CopyPose {
   Affine to_world;
   Affine to_copy;
@@ -39,8 +39,8 @@ class PlacedObject {
   Affine to_world_at(float time) const { return moves_ ? motion_.at(time) : to_world_; }
   Affine to_object_at(float time) const { return moves_ ? motion_.at(time).inverse() : to_object_; }
 
-  /// `copy` in what follows: where the copy of a instancer stands that the object belongs to; null:
-  /// the object stands in the world itself.
+  /// `copy` in what follows: where the copy of an instancer stands that the object belongs to;
+  /// null: the object stands in the world itself.
 
   /// Where the ray's line meets triangle `primitive` (or the quadric: u = v = 0; or piece
   /// `primitive` of a strand: u is the place along it), as distance along the ray and barycentrics.

@@ -116,7 +116,7 @@ bool in_reach(const Bounds& b) {
          largest_coordinate(b.upper) <= kLargestCoordinate;
 }
 
-/// Of a member of a instancer, in all of its copies.
+/// Of a member of an instancer, in all of its copies.
 Status check_instancer(const Placement& p, const Bounds& box) {
   const PointInstancer& instancer = *p.instancer;
   if (instancer.places == nullptr || instancer.places->empty())

@@ -13,7 +13,7 @@
 
 namespace hyades::core {
 
-/// About what a copy of a instancer takes while a scene is made, its place and Embree's hierarchy.
+/// About what a copy of an instancer takes while a scene is made, its place and Embree's hierarchy.
 inline constexpr size_t kBytesPerCopy = 192;
 
 /// Reads the places of copies: the vertices of a PLY file (text or binary, perhaps packed by gzip),

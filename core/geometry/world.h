@@ -83,7 +83,7 @@ class World {
   /// for less work. False, and `point` is unchanged, where there is none.
   virtual bool nearest(const Ray& ray, RayKind kind, SurfacePoint& point) const = 0;
 
-  /// The surface point of placement `object` (of a instancer: in its first copy) at triangle
+  /// The surface point of placement `object` (of an instancer: in its first copy) at triangle
   /// `primitive`, barycentrics (u, v), shutter
   /// time `time`: what light sampling on a mesh needs.
   virtual SurfacePoint triangle_point(uint32_t object, uint32_t primitive, float u, float v,
@@ -93,7 +93,7 @@ class World {
   /// space) at shutter time `time`: what light sampling on a quadric needs.
   virtual SurfacePoint quadric_point(uint32_t object, const Vec3& near, float time) const = 0;
 
-  /// Object-to-world matrix of placement `object` at shutter time `time`; of a instancer's members
+  /// Object-to-world matrix of placement `object` at shutter time `time`; of an instancer's members
   /// that of the instancer as a whole.
   virtual Mat4 transform_at(uint32_t object, float time) const = 0;
 

@@ -37,8 +37,8 @@ bool are_all_frames(const Job& job, const std::vector<int32_t>& numbers);
 /// The paths of the frames' pictures for `video`, with VideoFrames::folder before them.
 std::vector<std::string> video_pictures(const VideoDesc& video, const VideoFrames& frames);
 
-/// The video's path below VideoFrames::folder: `film.mp4`, or `film.10-20.mp4` of some frames,
-/// which must not take the place of the whole film.
+/// The video's path below VideoFrames::folder: `video.mp4`, or `video.10-20.mp4` of some frames,
+/// which must not take the place of the whole video.
 std::string video_file(const VideoDesc& video, const VideoFrames& frames);
 
 /// The folder of a video's pictures, below the output folder.

@@ -32,7 +32,7 @@ Bounds bounds_in_world(const Placement& placement) {
   return all;
 }
 
-/// Of what the surface (of a instancer: its first copy) encloses when the shutter opens. The same
+/// Of what the surface (of an instancer: its first copy) encloses when the shutter opens. The same
 /// however it is turned, and less than that of a body around it.
 double volume_of(const Placement& placement, SceneCache& cache) {
   const Shape& shape = placement.shape;

@@ -239,7 +239,7 @@ class Flattener {
     });
   }
 
-  /// Object to world, through all enclosing groups, scaled to metres; within a instancer to the
+  /// Object to world, through all enclosing groups, scaled to metres; within an instancer to the
   /// space of its copies.
   Mat4 chain_matrix(const JobTime& time) const {
     Mat4 m(1.0F);

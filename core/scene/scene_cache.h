@@ -86,7 +86,7 @@ class SceneCache {
   Result<std::shared_ptr<const TriangleMesh>> frame_mesh(const std::string& file,
                                                          const MeshUse& use);
 
-  /// Where the copies of a instancer stand.
+  /// Where the copies of an instancer stand.
   Result<std::shared_ptr<const std::vector<PlaceMatrix>>> places(const std::string& file);
 
   /// The strands of a file whose points mean `basis`.
