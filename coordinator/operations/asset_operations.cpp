@@ -54,10 +54,10 @@ std::vector<Operation> asset_operations() {
       {{"file.find", v1::ROLE_SUBMITTER}, "Assets/FindMissing", Runs::in_files, find_missing,
        {{.path = "POST /api/v1/assets/missing", .body = &kMissingFiles}}, farm::kMaxMessageBytes},
       // Of uploads those that begin are noted (begin_upload()).
-      {{"file.upload", v1::ROLE_SUBMITTER}, "Assets/Upload", {}, {},
+      {{"file.upload", v1::ROLE_SUBMITTER}, "Assets/Upload", Runs::in_files, {},
        {{.path = "PUT /api/v1/assets/{sha256}", .query = {{"size"}, {"offset"}}, .most_bytes = kMostOfPiece}}},
       // Who holds a file's SHA-256 has had it, or its job.
-      {{"file.download", v1::ROLE_VIEWER, true}, "Assets/Download"},
+      {{"file.download", v1::ROLE_VIEWER, true}, "Assets/Download", Runs::in_files},
   };
 }
 // clang-format on

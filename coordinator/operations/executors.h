@@ -1,11 +1,13 @@
 #pragma once
 
+#include <atomic>
 #include <chrono>
-#include <mutex>
+#include <cstdint>
 
 #include <grpcpp/support/status.h>
 
 #include "farm/thread_pool.h"
+#include "farm/wire.h"
 #include "farm/wire_status.h"
 
 namespace hyades::coordinator {
@@ -45,19 +47,31 @@ inline grpc::Status too_much_unread() {
                            std::chrono::seconds(2));
 }
 
-/// To be held while a large request is parsed, whether it came by gRPC or by HTTP: many of them at
-/// once would fill the memory that both share. Holds nothing where somebody else holds it: then the
-/// answer is another_is_large().
-inline std::unique_lock<std::mutex> take_large_request() {
-  static std::mutex large;
-  return {large, std::try_to_lock};
-}
+/// Lets large requests be parsed one at a time, whether they came by gRPC or by HTTP: many of them
+/// at once would fill the memory that both share. To be kept while one is parsed.
+class LargeRequest {
+ public:
+  LargeRequest() = default;
+  ~LargeRequest() {
+    if (held_) taken_.clear();
+  }
+  LargeRequest(const LargeRequest&) = delete;
+  LargeRequest& operator=(const LargeRequest&) = delete;
 
-/// RESOURCE_EXHAUSTED: another large request is being looked at.
-inline grpc::Status another_is_large() {
-  return farm::retry_later(grpc::StatusCode::RESOURCE_EXHAUSTED,
-                           "another large request is being looked at",
-                           std::chrono::milliseconds(500));
-}
+  /// For a request of so many bytes, until this goes. RESOURCE_EXHAUSTED where it is large, and
+  /// another large one is being looked at; then it may be asked again.
+  grpc::Status admit(uint64_t bytes) {
+    if (bytes <= farm::kMaxRequestBytes) return grpc::Status::OK;
+    held_ = !taken_.test_and_set();
+    if (held_) return grpc::Status::OK;
+    return farm::retry_later(grpc::StatusCode::RESOURCE_EXHAUSTED,
+                             "another large request is being looked at",
+                             std::chrono::milliseconds(500));
+  }
+
+ private:
+  inline static std::atomic_flag taken_;
+  bool held_ = false;
+};
 
 }  // namespace hyades::coordinator

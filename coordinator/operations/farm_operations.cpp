@@ -54,14 +54,15 @@ Rule may_steer_worker(const char* action) { return {action, v1::ROLE_OPERATOR, f
 std::vector<Operation> farm_operations() {
   return {
       // What tells nothing about the farm's work.
-      {{"page", kForAll, true}, "", {}, {}, {{"GET /"}, {"GET /openapi.yaml"}, {kDashboardFiles}}},
-      {{"health", kForAll, true}, "", {}, {}, {{"GET /healthz"}, {"GET /readyz"}}},
+      {{"page", kForAll, true}, "", Runs::at_once, {}, {{"GET /"}, {"GET /openapi.yaml"}, {kDashboardFiles}}},
+      {{"health", kForAll, true}, "", Runs::at_once, {}, {{"GET /healthz"}}},
+      {{"health", kForAll, true}, "", Runs::in_files, {}, {{"GET /readyz"}}},
       {{"farm.info", v1::ROLE_VIEWER, true}, "Farm/Info", Runs::at_once, info, {{"GET /api/v1/info"}}},
       {{"farm.workers", v1::ROLE_VIEWER}, "Farm/Workers", Runs::at_once, workers,
        {{.path = "GET /api/v1/workers", .show = workers_form, .handle = workers_of_all_pages,
          .runs = Runs::in_store}}},
-      {{"farm.events", v1::ROLE_VIEWER}, "", {}, {}, {{"GET /api/v1/events"}}},
-      {{"farm.metrics", v1::ROLE_VIEWER}, "", {}, {}, {{"GET /metrics"}}},
+      {{"farm.events", v1::ROLE_VIEWER}, "", Runs::at_once, {}, {{"GET /api/v1/events"}}},
+      {{"farm.metrics", v1::ROLE_VIEWER}, "", Runs::in_store, {}, {{"GET /metrics"}}},
       {{"worker.attend", v1::ROLE_ADMIN, true}, "Work/Attend"},
       {may_steer_worker("worker.drain"), "Farm/DrainWorker", Runs::at_once, steer_worker<&FarmControl::drain_worker>,
        {{.path = "POST /api/v1/workers/{worker}/drain", .body = &kReason, .only = "worker"}}},

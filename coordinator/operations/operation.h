@@ -15,7 +15,8 @@ namespace hyades::coordinator {
 
 /// One thing that the coordinator can be asked for: a row of the table from which gRPC, HTTP, the
 /// rules of access and the audit log come. One without a handler (a stream, an upload, a picture)
-/// is served by hand in services/ and web/, for those who may by this row.
+/// is served by hand in services/ and web/, for those who may by this row, where it says; pictures
+/// have threads of their own.
 struct Operation {
   Rule rule;
   const char* method = "";  ///< of gRPC: "Jobs/Cancel"; empty: none asks for it

@@ -67,7 +67,7 @@ std::vector<Operation> token_operations() {
       {{"token.create", v1::ROLE_ADMIN, false, true}, "Admin/CreateToken", Runs::in_store, create_token},
       {{"token.list", v1::ROLE_ADMIN}, "Admin/ListTokens", Runs::at_once, list_tokens},
       {{"token.revoke", v1::ROLE_ADMIN, false, true}, "Admin/RevokeToken", Runs::in_store, revoke_token},
-      {{"audit.read", v1::ROLE_ADMIN}, "Admin/Audit"},
+      {{"audit.read", v1::ROLE_ADMIN}, "Admin/Audit", Runs::in_files},
   };
 }
 // clang-format on

@@ -128,8 +128,8 @@ void add_asset_streams(Service& service) {
       "Assets/Upload",
       [&service, &controller](Service::Context& context, const Caller& caller,
                               const grpc::Status& admitted) {
-        return new UploadStream(controller, service.executors().files, service.admission(), context,
-                                caller, admitted);
+        return new UploadStream(controller, service.pool_of("Assets/Upload"), service.admission(),
+                                context, caller, admitted);
       },
       v1::UploadResponse::default_instance());
   service.add_server_stream<v1::DownloadRequest>(
@@ -155,7 +155,7 @@ void add_asset_streams(Service& service) {
           };
           return grpc::Status::OK;
         };
-        return new FileStream(context, service.executors().files, open, request.offset());
+        return new FileStream(context, service.pool_of("Assets/Download"), open, request.offset());
       });
 }
 

@@ -45,8 +45,8 @@ void add_audit_stream(Service& service) {
   service.add_server_stream<v1::AuditRequest>(
       "Admin/Audit", [&service](Service::Context& context, const Caller& /*caller*/,
                                 v1::AuditRequest&& request, grpc::Status&) {
-        return new AuditEntries(context, service.executors().files, service.admission().audit(),
-                                request.since_ms());
+        return new AuditEntries(context, service.pool_of("Admin/Audit"),
+                                service.admission().audit(), request.since_ms());
       });
 }
 

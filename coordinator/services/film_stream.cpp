@@ -132,7 +132,7 @@ void add_film_stream(Service& service) {
           grpc::Status& refused) -> OutgoingStream* {
         const std::string owner = owner_of(caller).name;
         if (films->open(owner)) {
-          return new FilmStream(context, service.executors().files, service.backend().controller,
+          return new FilmStream(context, service.pool_of("Jobs/Film"), service.backend().controller,
                                 std::move(request), films, owner);
         }
         refused =

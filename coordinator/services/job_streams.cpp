@@ -291,37 +291,39 @@ grpc::Status open(Controller& controller, const v1::FetchRequest& request, FileT
 
 void add_job_streams(Service& service) {
   Controller& controller = service.backend().controller;
-  farm::ThreadPool& store = service.executors().store;
-  farm::ThreadPool& files = service.executors().files;
   using Context = Service::Context;
   service.add_server_stream<v1::WatchRequest>(
       "Jobs/Watch",
-      [&](Context& context, const Caller& /*caller*/, v1::WatchRequest&& request, grpc::Status&) {
-        return new JobChanges(context, store, controller, request.job());
+      [&controller, &pool = service.pool_of("Jobs/Watch")](
+          Context& context, const Caller& /*caller*/, v1::WatchRequest&& request, grpc::Status&) {
+        return new JobChanges(context, pool, controller, request.job());
       });
   service.add_server_stream<v1::OutputsRequest>(
       "Jobs/Outputs",
-      [&](Context& context, const Caller& /*caller*/, v1::OutputsRequest&& request,
+      [&controller, &pool = service.pool_of("Jobs/Outputs")](
+          Context& context, const Caller& /*caller*/, v1::OutputsRequest&& request,
           grpc::Status& refused) -> OutgoingStream* {
         refused = check(request);
         if (!refused.ok()) return nullptr;
-        return new OutputList(context, store, controller, request);
+        return new OutputList(context, pool, controller, request);
       });
   service.add_server_stream<v1::LogsRequest>(
       "Jobs/Logs",
-      [&](Context& context, const Caller& /*caller*/, v1::LogsRequest&& request,
+      [&controller, &pool = service.pool_of("Jobs/Logs")](
+          Context& context, const Caller& /*caller*/, v1::LogsRequest&& request,
           grpc::Status& refused) -> OutgoingStream* {
         if (request.frames_size() <= kMostFrames) {
-          return new LogLines(context, store, controller, request);
+          return new LogLines(context, pool, controller, request);
         }
         refused = too_many(kMostFrames, "frames");
         return nullptr;
       });
   service.add_server_stream<v1::FetchRequest>(
       "Jobs/Fetch",
-      [&](Context& context, const Caller& /*caller*/, v1::FetchRequest&& request, grpc::Status&) {
+      [&controller, &pool = service.pool_of("Jobs/Fetch")](
+          Context& context, const Caller& /*caller*/, v1::FetchRequest&& request, grpc::Status&) {
         return new FileStream(
-            context, files,
+            context, pool,
             [&controller, request](FileToSend& file) { return open(controller, request, file); },
             request.offset());
       });

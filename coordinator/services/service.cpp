@@ -4,7 +4,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
-#include <mutex>
 #include <optional>
 #include <string>
 #include <utility>
@@ -83,9 +82,9 @@ class Service::UnaryCall final : public RequestCall {
   }
 
   void proceed() {
-    std::unique_lock<std::mutex> alone;
+    LargeRequest large;
     if (!work_->request) {
-      const grpc::Status read = within_memory([&] { return read_alone(alone); });
+      const grpc::Status read = within_memory([&] { return read_alone(large); });
       if (!read.ok()) return Finish(read);
     }
     const std::shared_ptr<Work> work = work_;
@@ -101,11 +100,11 @@ class Service::UnaryCall final : public RequestCall {
     work_->request.reset(operation_.handle.request().New());
     return farm::parse(asked_, operation_.most_bytes, *work_->request);
   }
-  /// Reads a request that may be large; `alone` holds take_large_request() then.
-  grpc::Status read_alone(std::unique_lock<std::mutex>& alone) {
+  /// Reads a request that may be large.
+  grpc::Status read_alone(LargeRequest& large) {
     if (asked_.Length() > farm::kMaxRequestBytes && asked_.Length() <= operation_.most_bytes) {
-      alone = take_large_request();
-      if (!alone) return another_is_large();
+      const grpc::Status admitted = large.admit(asked_.Length());
+      if (!admitted.ok()) return admitted;
       const auto& type = *operation_.handle.request().GetDescriptor();
       if (!farm::has_few_parts(asked_, type, farm::kMostParts)) {
         return {grpc::StatusCode::INVALID_ARGUMENT,
@@ -221,6 +220,10 @@ void Service::add(const char* method, Method::RpcType type,
   names_.push_back(std::string("/hyades.v1.") + method);
   AddMethod(new grpc::internal::RpcServiceMethod(names_.back().c_str(), type, nullptr));
   MarkMethodRawCallback(index, handler);
+}
+
+farm::ThreadPool& Service::pool_of(const char* method) {
+  return *executors_.of(operation_of_method(method).runs);
 }
 
 void Service::add_raw_server_stream(const char* method, const MakeRawStream& make) {

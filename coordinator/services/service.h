@@ -63,7 +63,8 @@ class Service final : public grpc::Service {
                        const MakeReactor<grpc::ServerBidiReactor<Bytes, Bytes>>& make);
 
   Backend& backend() { return at_; }
-  Executors& executors() { return executors_; }
+  /// The pool on which a stream may wait for the disk, by the method's row.
+  farm::ThreadPool& pool_of(const char* method);
   const Admission& admission() const { return admission_; }
   farm::ByteBudget& waiting() { return waiting_; }
 

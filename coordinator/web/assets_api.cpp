@@ -30,7 +30,7 @@ grpc::Status invalid(const std::string& message) {
 
 void AssetsApi::add_routes(Router& router) {
   add_by_hand<v1::PieceRequest>(
-      router, executors_.files, "PUT", "/api/v1/assets/{sha256}",
+      router, executors_, "PUT", "/api/v1/assets/{sha256}",
       [this](const v1::PieceRequest& asked, const WebRequest& request) {
         if (!farm::is_content_name(asked.sha256())) {
           return error_reply(invalid("sha256: expected 64 hexadecimal digits in small letters"));

@@ -8,7 +8,7 @@ void add_health_routes(Router& router, Controller& controller, Executors& execut
     answer(text_reply("well\n", "text/plain; charset=utf-8"));
   });
   router.add("GET", "/readyz", [&](const WebRequest& request, const Answer& answer) {
-    answer_by(executors.files, request.caller, answer, [&controller] {
+    answer_by(executors, "GET /readyz", request.caller, answer, [&controller] {
       const grpc::Status room = controller.disk().admit(0);
       WebReply reply = text_reply(room.ok() ? "ready\n" : room.error_message() + "\n",
                                   "text/plain; charset=utf-8");

@@ -56,9 +56,9 @@ WebReply document(Controller& controller, uint64_t job) {
 
 void add_job_routes(Router& router, Controller& controller, Executors& executors) {
   add_by_hand<v1::LogsRequest>(
-      router, executors.store, "GET", "/api/v1/jobs/{job}/logs",
+      router, executors, "GET", "/api/v1/jobs/{job}/logs",
       [&](const v1::LogsRequest& asked, const WebRequest&) { return logs(controller, asked); });
-  add_by_hand<v1::JobRequest>(router, executors.files, "GET", "/api/v1/jobs/{job}/document",
+  add_by_hand<v1::JobRequest>(router, executors, "GET", "/api/v1/jobs/{job}/document",
                               [&](const v1::JobRequest& asked, const WebRequest&) {
                                 return document(controller, asked.job());
                               });

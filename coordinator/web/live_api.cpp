@@ -39,20 +39,15 @@ void LiveApi::add_routes(Router& router) {
     answer(std::move(reply));
   });
   add_by_hand<v1::JobRequest>(
-      router, "GET", "/api/v1/jobs/{job}/events",
-      [this](const v1::JobRequest& asked, const WebRequest& request, const Answer& answer) {
+      router, executors_, "GET", "/api/v1/jobs/{job}/events",
+      [this](const v1::JobRequest& asked, const WebRequest&) {
         // Whether there is such a job is known before the stream begins.
-        const bool taken = executors_.store.submit(
-            [this, job = asked.job(), answer] {
-              v1::GetJobResponse got;
-              const grpc::Status status = controller_.queries().get(job, INT32_MAX, got);
-              if (!status.ok()) return answer(error_reply(status));
-              WebReply reply = live();
-              reply.source = std::make_shared<JobEvents>(controller_, job);
-              answer(std::move(reply));
-            },
-            owner_of(request.caller).name);
-        if (!taken) answer(error_reply(crowded()));
+        v1::GetJobResponse got;
+        const grpc::Status status = controller_.queries().get(asked.job(), INT32_MAX, got);
+        if (!status.ok()) return error_reply(status);
+        WebReply reply = live();
+        reply.source = std::make_shared<JobEvents>(controller_, asked.job());
+        return reply;
       });
 }
 

@@ -163,7 +163,7 @@ std::string metrics_text(Controller& controller) {
 
 void add_metrics(Router& router, Controller& controller, Executors& executors) {
   router.add("GET", "/metrics", [&](const WebRequest& request, const Answer& answer) {
-    answer_by(executors.store, request.caller, answer, [&controller] {
+    answer_by(executors, "GET /metrics", request.caller, answer, [&controller] {
       return text_reply(metrics_text(controller), "text/plain; version=0.0.4; charset=utf-8");
     });
   });

@@ -2,7 +2,6 @@
 
 #include <cstddef>
 #include <memory>
-#include <mutex>
 #include <string>
 #include <utility>
 
@@ -14,13 +13,10 @@
 namespace hyades::coordinator {
 namespace {
 
-/// Reads a body, of those that are large one at a time.
 grpc::Status read_alone(const std::string& body, const BodyForm& form, Message& message) {
-  std::unique_lock<std::mutex> alone;
-  if (body.size() > farm::kMaxRequestBytes) {
-    alone = take_large_request();
-    if (!alone) return another_is_large();
-  }
+  LargeRequest large;
+  const grpc::Status admitted = large.admit(body.size());
+  if (!admitted.ok()) return admitted;
   return within_memory([&] { return read_body(body, form, message); });
 }
 

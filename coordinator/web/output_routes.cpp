@@ -203,15 +203,15 @@ WebReply send_archive(Controller& controller, uint64_t job) {
 
 void add_output_routes(Router& router, Controller& controller, Executors& executors) {
   const std::string base = "/api/v1/jobs/{job}/";
-  add_by_hand<v1::OutputsPageRequest>(router, executors.store, "GET", base + "outputs",
+  add_by_hand<v1::OutputsPageRequest>(router, executors, "GET", base + "outputs",
                                       [&](const v1::OutputsPageRequest& asked, const WebRequest&) {
                                         return list(controller, asked);
                                       });
-  add_by_hand<v1::OutputRequest>(router, executors.files, "GET", base + "outputs/{path...}",
+  add_by_hand<v1::OutputRequest>(router, executors, "GET", base + "outputs/{path...}",
                                  [&](const v1::OutputRequest& asked, const WebRequest& request) {
                                    return file(controller, asked, request);
                                  });
-  add_by_hand<v1::JobRequest>(router, executors.files, "GET", base + "archive.zip",
+  add_by_hand<v1::JobRequest>(router, executors, "GET", base + "archive.zip",
                               [&](const v1::JobRequest& asked, const WebRequest&) {
                                 return send_archive(controller, asked.job());
                               });

@@ -6,6 +6,7 @@
 #include "coordinator/access/caller.h"
 #include "coordinator/controller/within_memory.h"
 #include "coordinator/operations/executors.h"
+#include "coordinator/operations/operation.h"
 #include "coordinator/web/exchange.h"
 #include "coordinator/web/request_form.h"
 #include "coordinator/web/router.h"
@@ -23,13 +24,15 @@ WebReply reply_in_memory(const Make& make) {
   return done.ok() ? reply : error_reply(done);
 }
 
-/// Has a thread of `pool`, when it is the caller's turn, answer with the WebReply that `what()`
-/// gives: for what may wait for the disk.
+/// Answers with the WebReply that `what()` gives: where the route's row says, when it is the
+/// caller's turn there.
 template <class What>
-void answer_by(farm::ThreadPool& pool, const Caller& caller, const Answer& answer,
-               const What& what) {
+void answer_by(Executors& executors, const std::string& route, const Caller& caller,
+               const Answer& answer, const What& what) {
+  farm::ThreadPool* pool = executors.of(operation_of_route(route).runs);
+  if (pool == nullptr) return answer(reply_in_memory(what));
   const bool taken =
-      pool.submit([answer, what] { answer(reply_in_memory(what)); }, owner_of(caller).name);
+      pool->submit([answer, what] { answer(reply_in_memory(what)); }, owner_of(caller).name);
   if (!taken) answer(error_reply(crowded()));
 }
 
@@ -48,17 +51,17 @@ void add_by_hand(Router& router, const std::string& method, const std::string& p
              });
 }
 
-/// Adds a route that is served by hand, where a thread of `pool` answers with the WebReply that
-/// `what(asked, request)` gives. `asked`: what the path and the query say.
+/// Adds a route that is served by hand, and answered with the WebReply that `what(asked, request)`
+/// gives, where its row says. `asked`: what the path and the query say.
 template <class Asked, class What>
-void add_by_hand(Router& router, farm::ThreadPool& pool, const std::string& method,
+void add_by_hand(Router& router, Executors& executors, const std::string& method,
                  const std::string& pattern, What what) {
-  add_by_hand<Asked>(
-      router, method, pattern,
-      [&pool, what](const Asked& asked, const WebRequest& request, const Answer& answer) {
-        answer_by(pool, request.caller, answer,
-                  [what, asked, request] { return what(asked, request); });
-      });
+  add_by_hand<Asked>(router, method, pattern,
+                     [&executors, route = method + " " + pattern, what](
+                         const Asked& asked, const WebRequest& request, const Answer& answer) {
+                       answer_by(executors, route, request.caller, answer,
+                                 [what, asked, request] { return what(asked, request); });
+                     });
 }
 
 }  // namespace hyades::coordinator

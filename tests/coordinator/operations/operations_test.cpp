@@ -89,6 +89,14 @@ TEST(Operations, OnlyThoseWhoMayWaitLookWhoseJobItIs) {
   }
 }
 
+TEST(Operations, StreamsSayWhereTheyWaitForTheDisk) {
+  for (const Operation& row : all_operations()) {
+    const std::string method = row.method;
+    if (row.handle || method.empty() || method == "Work/Attend") continue;
+    EXPECT_NE(row.runs, Runs::at_once) << method;
+  }
+}
+
 /// What is answered from memory is not looked at again.
 TEST(Operations, OnlyWhatEverybodyMayKnowIsAnsweredFromMemory) {
   for (const Operation& row : all_operations()) {

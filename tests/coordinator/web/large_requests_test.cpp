@@ -1,8 +1,9 @@
 // Requests that take much memory to be parsed.
 #include <gtest/gtest.h>
 
-#include <mutex>
+#include <optional>
 #include <string>
+#include <utility>
 
 #include "coordinator/operations/executors.h"
 #include "tests/coordinator/web/web_world.h"
@@ -34,14 +35,12 @@ TEST(LargeRequests, BothDoorsTogetherLookAtOneAtATime) {
 
   EXPECT_EQ(by_http(), 200);
   EXPECT_EQ(by_grpc(), grpc::StatusCode::OK);
-  std::unique_lock<std::mutex> somebody_elses;
-  ASSERT_TRUE(eventually([&] {
-    somebody_elses = take_large_request();
-    return somebody_elses.owns_lock();
-  })) << "the last one has been answered";
+  std::optional<LargeRequest> somebody_elses(std::in_place);
+  ASSERT_TRUE(eventually([&] { return somebody_elses->admit(farm::kMaxRequestBytes + 1).ok(); }))
+      << "the last one has been answered";
   EXPECT_EQ(by_http(), 503);
   EXPECT_EQ(by_grpc(), grpc::StatusCode::RESOURCE_EXHAUSTED);
-  somebody_elses.unlock();
+  somebody_elses.reset();
   EXPECT_EQ(by_http(), 200);
   EXPECT_EQ(by_grpc(), grpc::StatusCode::OK);
 }
