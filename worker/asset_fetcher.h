@@ -74,8 +74,8 @@ class AssetFetcher {
   struct Wanted {
     uint64_t job = 0;
     std::string spec;                     ///< a v1::JobSpec as it travels: few are read at once
-    bool dropped = false;                 ///< with the lock: it was released meanwhile
-    grpc::ClientContext* call = nullptr;  ///< with the lock: the download in progress
+    bool dropped = false;                 ///< with mutex_: it was released meanwhile
+    grpc::ClientContext* call = nullptr;  ///< with mutex_: the download in progress
   };
   /// Of a file: nobody else fetches it meanwhile.
   class FileClaim;

@@ -44,7 +44,8 @@ struct ControllerContext {
   const std::unique_ptr<Meters> meters;
   std::atomic<bool> stop{false};  ///< the controller ends
   StateMutex mutex;               ///< behind state_lock
-  /// One submission at a time, and none while jobs or unused files are removed.
+  /// One submission at a time, and none while jobs or unused files are removed. It guards no member
+  /// (core/base/mutex.h).
   std::timed_mutex submissions;
   /// Waits for other submissions, two seconds at most; a lock that is not held if that is not
   /// enough.

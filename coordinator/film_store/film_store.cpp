@@ -486,6 +486,7 @@ std::string FilmStore::class_of(int32_t frame) const {
 }
 
 /// Where records of all of a film are written or read: until the result goes nobody else does so.
+/// The lock guards no member (core/base/mutex.h).
 std::unique_lock<core::Mutex> FilmStore::hold_whole_records() const {
   if (!set_.splats || options_.whole_records == nullptr) return {};
   return std::unique_lock(*options_.whole_records);

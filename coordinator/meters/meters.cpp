@@ -47,11 +47,13 @@ Meters::Meters()
       calls_(counters(registry_, "hyades_grpc_calls_total", "Calls that are over")),
       received_(counters(registry_, "hyades_grpc_received_bytes_total", "Bytes of messages")),
       sent_(counters(registry_, "hyades_grpc_sent_bytes_total", "Bytes of messages")),
-      call_seconds_(histograms(registry_, "hyades_grpc_call_seconds",
-                               "From a call's beginning to its end, but for streams")),
+      call_seconds_{histograms(registry_, "hyades_grpc_call_seconds",
+                               "From a call's beginning to its end, but for streams"),
+                    "method"},
       answers_(counters(registry_, "hyades_http_requests_total", "Requests that were answered")),
-      answer_seconds_(histograms(registry_, "hyades_http_request_seconds",
-                                 "From a whole request to its answer")),
+      answer_seconds_{histograms(registry_, "hyades_http_request_seconds",
+                                 "From a whole request to its answer"),
+                      "route"},
       workers_lost_(&counters(registry_, "hyades_workers_lost_total",
                               "Workers that are gone and had not said that they leave")
                          .Add({})),
@@ -100,7 +102,7 @@ void Meters::finished(Time took) { finish_->Observe(seconds(took)); }
 
 void Meters::called(const std::string& method, const char* code, bool unary, Time took) {
   calls_.Add({{"method", method}, {"code", code}}).Increment();
-  if (unary) histogram_of(call_seconds_, calls_known_, "method", method).Observe(seconds(took));
+  if (unary) call_seconds_.of(method).Observe(seconds(took));
 }
 
 void Meters::call_bytes(const std::string& method, uint64_t received, uint64_t sent) {
@@ -112,12 +114,11 @@ void Meters::answered(const std::string& method, const std::string& route, unsig
                       Time took) {
   answers_.Add({{"method", method}, {"route", route}, {"code", std::to_string(status)}})
       .Increment();
-  histogram_of(answer_seconds_, answers_known_, "route", route).Observe(seconds(took));
+  answer_seconds_.of(route).Observe(seconds(took));
 }
 
-Histogram& Meters::histogram_of(Family<Histogram>& family, std::map<std::string, Histogram*>& known,
-                                const char* label, const std::string& text) {
-  const core::MutexLock lock(mutex_);
+Histogram& Meters::Histograms::of(const std::string& text) {
+  const core::MutexLock lock(mutex);
   Histogram*& histogram = known[text];
   if (histogram == nullptr) histogram = &family.Add({{label, text}}, quick());
   return *histogram;

@@ -65,10 +65,15 @@ class Meters {
  private:
   template <class T>
   using Family = prometheus::Family<T>;
-  /// One histogram for each text, made when it is first wanted.
-  prometheus::Histogram& histogram_of(Family<prometheus::Histogram>& family,
-                                      std::map<std::string, prometheus::Histogram*>& known,
-                                      const char* label, const std::string& text);
+  /// One histogram for each text of a label, made when it is first wanted.
+  struct Histograms {
+    prometheus::Histogram& of(const std::string& text) HYADES_EXCLUDES(mutex);
+
+    Family<prometheus::Histogram>& family;
+    const char* label;
+    core::Mutex mutex{};
+    std::map<std::string, prometheus::Histogram*> known HYADES_GUARDED_BY(mutex){};
+  };
 
   prometheus::Registry registry_;
   Family<prometheus::Counter>& leased_;
@@ -77,9 +82,9 @@ class Meters {
   Family<prometheus::Counter>& calls_;
   Family<prometheus::Counter>& received_;
   Family<prometheus::Counter>& sent_;
-  Family<prometheus::Histogram>& call_seconds_;
+  Histograms call_seconds_;
   Family<prometheus::Counter>& answers_;
-  Family<prometheus::Histogram>& answer_seconds_;
+  Histograms answer_seconds_;
   prometheus::Counter* workers_lost_;
   prometheus::Counter* film_bytes_;
   prometheus::Counter* http_bytes_;
@@ -88,9 +93,6 @@ class Meters {
   prometheus::Histogram* sync_;
   prometheus::Histogram* durable_;
   prometheus::Histogram* finish_;
-  core::Mutex mutex_;  ///< guards the maps below
-  std::map<std::string, prometheus::Histogram*> calls_known_;
-  std::map<std::string, prometheus::Histogram*> answers_known_;
 };
 
 }  // namespace hyades::coordinator

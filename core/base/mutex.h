@@ -5,7 +5,10 @@
 #include <mutex>
 
 // What lock guards what, said in code: Clang checks it (-Wthread-safety, tests/style/lint),
-// and other compilers see nothing of it.
+// and other compilers see nothing of it. It cannot follow two forms, which are told in prose:
+// - a lock that keeps others from doing something meanwhile (one build of a scene, one submission
+//   at a time) and guards no member. A std::unique_lock holds it, which is given from hand to hand;
+// - a member of a struct that the lock of another object guards. Its comment names that lock.
 #if defined(__clang__)
 #define HYADES_THREAD_ANNOTATION(x) __attribute__((x))
 #else

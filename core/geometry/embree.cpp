@@ -44,7 +44,8 @@ std::string name_of(RTCError error) {
   }
 }
 
-/// Held while a scene is built or released, so that a change of held_bytes belongs to one scene.
+/// Held while a scene is built or released, so that a change of held_bytes belongs to one scene. It
+/// guards no member (core/base/mutex.h).
 std::mutex& build_mutex() {
   static std::mutex* mutex = new std::mutex;
   return *mutex;

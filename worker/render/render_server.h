@@ -34,8 +34,8 @@ class RenderServer {
     uint64_t job = 0;
     core::Unit unit;
     std::shared_ptr<const ShelvedFrame> frame;  ///< from State::ready on
-    State state = State::waiting;               ///< with the lock
-    bool keep_batches = false;  ///< with the lock: when stopped, the batches that are done count
+    State state = State::waiting;               ///< with mutex_
+    bool keep_batches = false;  ///< with mutex_: when stopped, the batches that are done count
     std::atomic<bool> stop{false};
     std::atomic<uint32_t> batches_done{0};
     std::atomic<uint64_t> samples_done{0};
