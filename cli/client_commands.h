@@ -18,7 +18,7 @@
   COMMAND(pause, job, "lease no more units of a job")                            \
   COMMAND(resume, job, "let a paused job go on")                                 \
   COMMAND(cancel, job, "end a job")                                              \
-  COMMAND(retry, job, "take up a job's failed frames again")                     \
+  COMMAND(retry, job, "render a job's failed frames again")                      \
   COMMAND(priority, job, "change a job's priority")                              \
   COMMAND(delete, job, "forget a job that has ended")
 

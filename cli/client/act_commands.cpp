@@ -110,7 +110,7 @@ int cancel_command(int argc, char** argv) {
 
 int retry_command(int argc, char** argv) {
   return act("retry",
-             "Takes up again the failed frames of jobs, or all that a cancelled job has left.",
+             "Renders again the failed frames of jobs, or all that a cancelled job has left.",
              "Jobs/Retry", argc, argv, Namesakes::failed);
 }
 

@@ -146,11 +146,11 @@ Failure why_nothing(const v1::Job& job) {
   switch (job.state()) {
     case v1::JOB_STATE_FAILED:
       return {kFailed, fmt::format("job {} failed, there is nothing to fetch: hyades status {} "
-                                   "tells why, hyades retry {} takes it up again",
+                                   "tells why, hyades retry {} renders it again",
                                    id, id, id)};
     case v1::JOB_STATE_CANCELLED:
       return {kFailed, fmt::format("job {} was cancelled, there is nothing to fetch: hyades retry "
-                                   "{} takes it up again",
+                                   "{} renders the rest",
                                    id, id)};
     case v1::JOB_STATE_DONE:
       return {kFailed, fmt::format("job {} is done and has no files", id)};
@@ -193,14 +193,14 @@ Outcome what_is_missing(const v1::GetJobResponse& response, const std::vector<in
   }
   if (!failed.empty()) {
     return Failure{kFailed, fmt::format("of job {} {} {} failed and {} no files: hyades status {} "
-                                        "tells why, hyades retry {} takes {} up again",
+                                        "tells why, hyades retry {} renders {} again",
                                         job.id(), failed.size() == 1 ? "frame" : "frames",
                                         in_words(failed), failed.size() == 1 ? "has" : "have",
                                         job.id(), job.id(), failed.size() == 1 ? "it" : "them")};
   }
   if (job.state() == v1::JOB_STATE_CANCELLED && asked.empty()) {
     return Failure{kFailed, fmt::format("job {} was cancelled when {} of its {} frames were done: "
-                                        "hyades retry {} takes it up again",
+                                        "hyades retry {} renders the rest",
                                         job.id(), job.frames_done(), job.frames(), job.id())};
   }
   if (unfinished > 0 && !quiet) {

@@ -107,7 +107,7 @@ bool is_meant(const v1::Job& job, Namesakes namesakes) {
 const char* in_words(Namesakes namesakes) {
   return namesakes == Namesakes::newest ? "the newest"
          : namesakes == Namesakes::open ? "the only one that is open"
-                                        : "the only one with something to take up";
+                                        : "the only one with something to retry";
 }
 
 }  // namespace

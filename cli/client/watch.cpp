@@ -109,10 +109,9 @@ class Watcher {
       return Failure{kCancelled, fmt::format("job {} was cancelled{}", job_.id(), why)};
     }
     return Failure{
-        kFailed,
-        fmt::format("job {} failed: {} of {} are done{}; hyades retry {} takes up the rest",
-                    job_.id(), job_.frames_done(), core::counted(job_.frames(), "frame"), why,
-                    job_.id())};
+        kFailed, fmt::format("job {} failed: {} of {} are done{}; hyades retry {} renders the rest",
+                             job_.id(), job_.frames_done(), core::counted(job_.frames(), "frame"),
+                             why, job_.id())};
   }
 
  private:

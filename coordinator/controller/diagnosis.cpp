@@ -65,22 +65,22 @@ grpc::Status Diagnosis::explain(uint64_t id, v1::ExplainResponse& response) {
   switch ((*stored)->state) {
     case StoredState::running:
     case StoredState::paused:
-      reasons.say((*stored)->reason.empty() ? std::string("it is being taken up")
+      reasons.say((*stored)->reason.empty() ? std::string("it is being recovered")
                                             : "it " + (*stored)->reason);
       break;
     case StoredState::done:
       reasons.say("it is done");
       break;
     case StoredState::cancelled:
-      reasons.say("it was cancelled; 'retry' takes it up again");
+      reasons.say("it was cancelled; 'retry' renders what is left of it");
       break;
     default:
       reasons.say("it is over, but not all of it is done: " + (*stored)->reason +
-                  "; 'retry' takes it up again");
+                  "; 'retry' renders it again");
   }
-  const auto doubtful = context_.store->doubtful(id, UINT32_MAX);
-  if (!doubtful) return farm::unavailable(doubtful.error());
-  for (const int32_t frame : *doubtful) {
+  const auto suspect = context_.store->suspect_frames(id, UINT32_MAX);
+  if (!suspect) return farm::unavailable(suspect.error());
+  for (const int32_t frame : *suspect) {
     reasons.say_one(
         "frame {} is in doubt: a worker that had a part in it was found divergent after it was "
         "finished; "

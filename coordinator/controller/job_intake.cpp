@@ -282,7 +282,7 @@ void JobIntake::retry(uint64_t id, const JobReply& then) {
     open =
         active != nullptr && (active->making_videos || dispatcher_.scheduler().knows(active->id));
     if (open) {
-      jobs_.note(*active, v1::LOG_LEVEL_INFO, std::nullopt, {}, "failed frames are taken up again");
+      jobs_.note(*active, v1::LOG_LEVEL_INFO, std::nullopt, {}, "failed frames are rendered again");
       turn.tell(FramesRetried{active->id});
       records_.when_done(id, then);
     }
@@ -300,7 +300,7 @@ std::optional<JobRead> JobIntake::read_ahead(uint64_t id) {
   return recovery_.read(id);
 }
 
-/// A job that has ended is open again. Lets go of `one` once nobody else can take it up or away.
+/// A job that has ended is open again. Lets go of `one` once nobody else can recover or remove it.
 grpc::Status JobIntake::reopen(uint64_t id, std::optional<JobRead> read,
                                std::unique_lock<std::timed_mutex> one, v1::Job& now) {
   if (const grpc::Status left = wait_until_left(id, {}); !left.ok()) return left;
@@ -328,7 +328,7 @@ grpc::Status JobIntake::reopen(uint64_t id, std::optional<JobRead> read,
                 : forgotten;
   if (!recovered) {
     job = before;  // done, if only some of its pictures are suspect
-    job.reason = "could not be taken up again: " + recovered.error().message;
+    job.reason = "could not be retried: " + recovered.error().message;
     // Where this fails too it is tried again at the next start.
     (void)context_.store->update_job(job);
     if (!forgotten) return farm::unavailable(forgotten.error());
@@ -347,11 +347,11 @@ grpc::Status JobIntake::may_reopen(uint64_t id, StoredJob& job) {
   job = std::move(**stored);
   if (!has_ended(job.state)) return why_not_open(*context_.store, id);
   if (const grpc::Status may = may_have_one_more(job.owner); !may.ok()) return may;
-  const auto doubtful = context_.store->doubtful(id, 1);
-  if (!doubtful) return farm::unavailable(doubtful.error());
-  if (job.state == StoredState::done && doubtful->empty()) {
+  const auto suspect = context_.store->suspect_frames(id, 1);
+  if (!suspect) return farm::unavailable(suspect.error());
+  if (job.state == StoredState::done && suspect->empty()) {
     return {grpc::StatusCode::FAILED_PRECONDITION,
-            fmt::format("job {} is done: there is nothing to take up again", id)};
+            fmt::format("job {} is done: there is nothing to render again", id)};
   }
   return has_room_for(job.owner, {job.frames, memory_of(job)});
 }

@@ -64,7 +64,7 @@ v1::Frame describe_over(const StoredFrame& frame, const StoredJob& job) {
   wire.set_reason(frame.reason);
   wire.set_worker_class(frame.worker_class);
   wire.set_restarts(frame.restarts);
-  wire.set_doubtful(frame.doubtful);
+  wire.set_doubtful(frame.suspect);
   wire.set_black(frame.black);
   return wire;
 }

@@ -27,7 +27,7 @@ constexpr std::chrono::seconds kRecoveryPatience{30};
 constexpr const char* kRestarted = "goes on: the coordinator has been started again";
 
 std::string reason_to_wait(const core::Error& why) {
-  return "waits to be taken up again: " + why.message;
+  return "waits to be recovered: " + why.message;
 }
 
 }  // namespace
@@ -67,7 +67,7 @@ JobRead JobRecovery::read(uint64_t id) {
     const core::Error gone{
         file.path() +
         " is gone or damaged on the coordinator's disk: submit the job (or the file with another) "
-        "again, then 'retry' takes this one up"};
+        "again, then 'retry' renders this one"};
     return {gone, lacks_files(spec).value_or(false) ? Obstacle::lasting : Obstacle::passing};
   }
   const auto document = context_.documents.read(spec, kRecoveryPatience, (*stored)->owner);
@@ -99,7 +99,7 @@ void JobRecovery::recover_in_background(uint64_t id) {
   StoredJob waiting;
   if (auto stored = context_.store->summary(id); stored && *stored) waiting = std::move(**stored);
   waiting.id = id;
-  waiting.reason = "waits to be taken up again: the coordinator has just been started";
+  waiting.reason = "waits to be recovered: the coordinator has just been started";
   const std::string owner = waiting.owner;
   const StateLock lock(context_.mutex);
   jobs_.wait_for_recovery(std::move(waiting));
@@ -166,7 +166,7 @@ core::Status JobRecovery::give_up(uint64_t id, const core::Error& why) {
   if (!*stored) return {};
   (*stored)->state = StoredState::failed;
   (*stored)->ended_ms = core::wall_ms();
-  (*stored)->reason = "could not be taken up again: " + why.message;
+  (*stored)->reason = "could not be recovered: " + why.message;
   return context_.store->update_job(**stored);
 }
 
@@ -237,7 +237,7 @@ core::Result<RestoredJob> JobRecovery::restore_frames(ActiveJob& active) {
       note.restarts = frame.restarts + 1;
       jobs_.note(
           active, v1::LOG_LEVEL_WARNING, frame.frame, {},
-          frame.doubtful
+          frame.suspect
               ? "a worker that had a part in it was found divergent: it is rendered again"
               : "its outputs are gone or damaged, or went into a video that is made anew: it is "
                 "rendered again");
@@ -333,7 +333,7 @@ core::Result<std::set<int32_t>> JobRecovery::frames_to_repeat(
   std::vector<int32_t> done;
   for (const StoredFrame& frame : frames) {
     if (frame.done) done.push_back(frame.frame);
-    if (frame.doubtful) repeated.insert(frame.frame);
+    if (frame.suspect) repeated.insert(frame.frame);
   }
   if (core::Status told = repeat_for_videos(active, done, repeated); !told) return told.error();
   return repeated;

@@ -78,9 +78,9 @@ core::Result<bool> find_frames_of(sqlite3* db, const std::string& worker, uint64
   return looked == limit;
 }
 
-core::Result<std::vector<SuspectFrames>> make_doubtful(sqlite3* db, const std::string& worker,
-                                                       uint64_t since,
-                                                       std::vector<FrameOfJob> frames) {
+core::Result<std::vector<SuspectFrames>> make_suspect(sqlite3* db, const std::string& worker,
+                                                      uint64_t since,
+                                                      std::vector<FrameOfJob> frames) {
   std::sort(frames.begin(), frames.end());
   std::vector<SuspectFrames> jobs;
   for (const FrameOfJob& one : frames) {

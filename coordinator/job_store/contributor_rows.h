@@ -33,14 +33,15 @@ struct FrameOfJob {
 /// Whether there may be more.
 core::Result<bool> find_frames_of(sqlite3* db, const std::string& worker, uint64_t since,
                                   FrameOfJob& last, uint32_t limit, std::vector<FrameOfJob>& found);
-/// Makes those of `frames` doubtful of which that still holds, and returns those that were not so
+/// Makes those of `frames` suspect of which that still holds, and returns those that were not so
 /// before; within a transaction.
-core::Result<std::vector<SuspectFrames>> make_doubtful(sqlite3* db, const std::string& worker,
-                                                       uint64_t since,
-                                                       std::vector<FrameOfJob> frames);
+core::Result<std::vector<SuspectFrames>> make_suspect(sqlite3* db, const std::string& worker,
+                                                      uint64_t since,
+                                                      std::vector<FrameOfJob> frames);
 
-/// JobStore::trust() and trusted().
+/// Stores when these workers could last be trusted; replaces earlier moments.
 core::Status store_trust(sqlite3* db, const std::vector<StoredTrust>& workers);
+/// All workers of which that is kept.
 core::Result<std::vector<StoredTrust>> read_trust(sqlite3* db);
 
 /// "1, 3-7 and 12 more": for a line of a log.

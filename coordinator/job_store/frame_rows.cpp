@@ -26,7 +26,7 @@ core::Result<std::vector<StoredFrame>> read_frames(sqlite3* db, uint64_t job,
     frame.reason = rows.bytes(2);
     frame.worker_class = rows.bytes(3);
     frame.restarts = static_cast<uint32_t>(rows.integer(4));
-    frame.doubtful = rows.integer(5) != 0;
+    frame.suspect = rows.integer(5) != 0;
     frame.black = rows.integer(6) != 0;
   }
   if (core::Status status = rows.status(); !status) return status.error();
@@ -49,7 +49,7 @@ core::Result<std::vector<int32_t>> read_marked(sqlite3* db, const std::string& m
 
 }  // namespace
 
-core::Result<std::vector<int32_t>> read_doubtful(sqlite3* db, uint64_t job, uint32_t limit) {
+core::Result<std::vector<int32_t>> read_suspect_frames(sqlite3* db, uint64_t job, uint32_t limit) {
   return read_marked(db, "doubtful", job, limit);
 }
 

@@ -12,12 +12,12 @@ namespace hyades::coordinator {
 
 // Frames that are over, as rows.
 
-/// JobStore::frames().
+/// The job's frames that are over, above `after` (nothing: all), in order, at most `limit`.
 core::Result<std::vector<StoredFrame>> read_frames(sqlite3* db, uint64_t job,
                                                    std::optional<int32_t> after, uint32_t limit);
-/// JobStore::doubtful().
-core::Result<std::vector<int32_t>> read_doubtful(sqlite3* db, uint64_t job, uint32_t limit);
-/// JobStore::black().
+/// Numbers of the job's frames that are suspect, in order, at most `limit`.
+core::Result<std::vector<int32_t>> read_suspect_frames(sqlite3* db, uint64_t job, uint32_t limit);
+/// Numbers of the job's frames that are black all over, in order, at most `limit`.
 core::Result<std::vector<int32_t>> read_black(sqlite3* db, uint64_t job, uint32_t limit);
 
 /// Replaces what is known of the frame, but for its outputs, of which it has none then; within a

@@ -60,9 +60,9 @@ struct StoredFrame {
   /// themselves (v1::Hello.worker_id); an empty name: somebody who is not known any more. It is not
   /// read again: mark_divergent() looks at it.
   std::vector<std::string> parts{};
-  uint64_t moment = 0;    ///< when it was finished: greater than that of any frame before
-  bool doubtful = false;  ///< a worker that had a part in it was found divergent afterwards
-  bool black = false;     ///< no light has reached any pixel of a finished frame
+  uint64_t moment = 0;   ///< when it was finished: greater than that of any frame before
+  bool suspect = false;  ///< a worker that had a part in it was found divergent afterwards
+  bool black = false;    ///< no light has reached any pixel of a finished frame
 };
 
 /// Workers of which it is kept when they could be trusted: the last ones.
@@ -223,13 +223,13 @@ class JobStore {
   virtual core::Result<std::vector<StoredTrust>> trusted() = 0;
   /// The worker was found divergent, and is quarantined: all frames of all jobs, also of those that
   /// have ended, that were finished after `since` and that it had a part in, or may have had, are
-  /// doubtful from now on. Each job's log gets `line` (its text with the frames behind it). All of
-  /// it at once, or nothing. Returns the frames that were not doubtful before.
+  /// suspect from now on. Each job's log gets `line` (its text with the frames behind it). All of
+  /// it at once, or nothing. Returns the frames that were not suspect before.
   virtual core::Result<std::vector<SuspectFrames>> mark_divergent(const StoredQuarantine& worker,
                                                                   uint64_t since,
                                                                   const StoredLine& line) = 0;
-  /// Frames of the job that are doubtful, in order, at most `limit`.
-  virtual core::Result<std::vector<int32_t>> doubtful(uint64_t job, uint32_t limit) = 0;
+  /// Frames of the job that are suspect, in order, at most `limit`.
+  virtual core::Result<std::vector<int32_t>> suspect_frames(uint64_t job, uint32_t limit) = 0;
   /// Frames of the job that are black, in order, at most `limit`.
   virtual core::Result<std::vector<int32_t>> black(uint64_t job, uint32_t limit) = 0;
 

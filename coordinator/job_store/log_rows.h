@@ -26,7 +26,7 @@ class LogRows {
   std::map<uint64_t, uint64_t> counts_;  ///< of jobs that had lines lately
 };
 
-/// JobStore::lines().
+/// Lines of the job's log behind number `after`, the oldest first, at most `limit`.
 core::Result<std::vector<StoredLine>> read_lines(sqlite3* db, uint64_t job, uint64_t after,
                                                  uint32_t limit);
 

@@ -18,10 +18,13 @@ core::Status put_outputs(sqlite3* db, uint64_t job, const std::vector<StoredOutp
 /// Forgets outputs with one of these paths, or below it; within a transaction.
 core::Status delete_outputs(sqlite3* db, uint64_t job, const std::vector<std::string>& paths);
 
-/// JobStore::outputs(), outputs_of() and output().
+/// Finished files of the job behind number `after`, in the order in which they were finished, at
+/// most `limit`.
 core::Result<std::vector<StoredOutput>> read_outputs(sqlite3* db, uint64_t job, uint64_t after,
                                                      uint32_t limit);
+/// Those of one frame, in the order of their paths.
 core::Result<std::vector<StoredOutput>> read_outputs_of(sqlite3* db, uint64_t job, int32_t frame);
+/// The one with this path; nothing where there is none.
 core::Result<std::optional<StoredOutput>> read_output(sqlite3* db, uint64_t job,
                                                       const std::string& path);
 

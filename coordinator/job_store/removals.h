@@ -15,9 +15,9 @@ namespace hyades::coordinator {
 /// Of a query whose first parameter is a job: it finds nothing of one that is removed.
 inline const std::string kJobIsThere = " AND EXISTS (SELECT 1 FROM jobs WHERE id = ?1) ";
 
-/// JobStore::remove_job().
+/// Takes the job out of `jobs`, and notes that its other rows are to go.
 core::Status mark_removed(sqlite3* db, uint64_t job);
-/// JobStore::drop_removed().
+/// Drops at most `rows` of the other rows of jobs that were removed. Whether there may be more.
 core::Result<bool> drop_removed_rows(sqlite3* db, uint32_t rows);
 
 }  // namespace hyades::coordinator

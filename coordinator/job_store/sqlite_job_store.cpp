@@ -340,7 +340,7 @@ class SqliteJobStore final : public JobStore {
     const core::Status stored = at_once([&]() HYADES_REQUIRES(mutex_) -> core::Status {
       if (core::Status kept = put_quarantine(worker); !kept) return kept;
       found.insert(found.end(), stored_meanwhile_.begin(), stored_meanwhile_.end());
-      auto jobs = make_doubtful(db_.get(), worker.worker, since, std::move(found));
+      auto jobs = make_suspect(db_.get(), worker.worker, since, std::move(found));
       if (!jobs) return jobs.error();
       suspects = std::move(*jobs);
       for (const SuspectFrames& job : suspects) {
@@ -354,9 +354,9 @@ class SqliteJobStore final : public JobStore {
     return suspects;
   }
 
-  core::Result<std::vector<int32_t>> doubtful(uint64_t job, uint32_t limit) override {
+  core::Result<std::vector<int32_t>> suspect_frames(uint64_t job, uint32_t limit) override {
     const core::MutexLock lock(mutex_);
-    return read_doubtful(db_.get(), job, limit);
+    return read_suspect_frames(db_.get(), job, limit);
   }
   core::Result<std::vector<int32_t>> black(uint64_t job, uint32_t limit) override {
     const core::MutexLock lock(mutex_);

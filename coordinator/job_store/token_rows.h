@@ -11,11 +11,13 @@ namespace hyades::coordinator {
 
 // The rows of the table `tokens`, for the store, which has the lock.
 
-/// JobStore::tokens(), add_token() and revoke_token().
+/// All tokens, also those that are of no use any more, the oldest first.
 core::Result<std::vector<StoredToken>> read_tokens(sqlite3* db);
+/// An error where the token's id is there already.
 core::Status insert_token(sqlite3* db, const StoredToken& token);
+/// The token keeps its row, which tells whose it was.
 core::Status mark_revoked(sqlite3* db, const std::string& id, int64_t revoked_ms);
-/// JobStore::note_uses(): all of them at once, or none.
+/// Stores when tokens were last used: all of it at once, or nothing.
 core::Status update_uses(sqlite3* db, const std::vector<TokenUse>& uses);
 
 }  // namespace hyades::coordinator

@@ -241,9 +241,9 @@ std::optional<FramePlace> Granting::next_of(const FairShare& share, WorkerId id,
         begun = begun || (!fits && films_.may_hold_up(*job));
         if (!fits || held_up) continue;
       }
-      const Welcome welcome = welcome_at(place, id, worker, fresh);
-      if (welcome == Welcome::yes) return place;
-      if (welcome == Welcome::no) continue;
+      const Suits suits = suits_at(place, id, worker, fresh);
+      if (suits == Suits::yes) return place;
+      if (suits == Suits::no) continue;
       const double left = affinity_.seconds_left(place, frame.threads() + worker.threads);
       if (left > most) {
         most = left;
@@ -257,21 +257,21 @@ std::optional<FramePlace> Granting::next_of(const FairShare& share, WorkerId id,
 
 /// Who has the frame's scene is welcome as long as there is something for them; others while it has
 /// too few workers. Those who come too late are turned away.
-Granting::Welcome Granting::welcome_at(const FramePlace& place, WorkerId id, const Worker& worker,
-                                       bool fresh) {
-  if (!has_work_for(*place.job, place.frame(), id, worker)) return Welcome::no;
-  if (Affinity::has_scene(worker, place.id())) return fresh ? Welcome::no : Welcome::yes;
+Granting::Suits Granting::suits_at(const FramePlace& place, WorkerId id, const Worker& worker,
+                                   bool fresh) {
+  if (!has_work_for(*place.job, place.frame(), id, worker)) return Suits::no;
+  if (Affinity::has_scene(worker, place.id())) return fresh ? Suits::no : Suits::yes;
   // Scenes are loaded one after the other.
   if (affinity_.still_loads(worker)) {
     turned_away_ = true;
-    return Welcome::no;
+    return Suits::no;
   }
-  if (!affinity_.crowded(place, worker)) return Welcome::yes;
+  if (!affinity_.crowded(place, worker)) return Suits::yes;
   if (affinity_.too_late(place, worker)) {
     turned_away_ = true;
-    return Welcome::no;
+    return Suits::no;
   }
-  return Welcome::if_nothing_else;
+  return Suits::if_nothing_else;
 }
 
 /// Whether there is something of the frame for this worker.
@@ -396,9 +396,10 @@ bool Granting::film_fits(const ScheduledJob& job, const FrameSlot& slot) const {
   return false;
 }
 
-/// Has films set aside: those of paused jobs in any case, as they may stay so for ever, and where
-/// others have no room those of frames that nobody has worked at for a while, which hold nobody up
-/// so, as their jobs have no workers; or that whoever has most of the room lets go in turn.
+/// Has films set aside: those of paused jobs in any case, as they may stay so for ever. Where
+/// others have no room also those of frames that nobody has worked at for a while: their jobs have
+/// no workers, so that nobody is held up. Or else those that whoever has most of the room lets go
+/// in turn.
 void Granting::make_room() {
   if (!next_room_ || step_.now < *next_room_) return;
   if (const auto next = films_.next()) {

@@ -43,7 +43,7 @@ class Granting {
 
  private:
   /// Whether a worker had better take units of a frame that is next in line.
-  enum class Welcome : uint8_t {
+  enum class Suits : uint8_t {
     no,
     if_nothing_else,  ///< the frame has workers enough
     yes,
@@ -58,7 +58,7 @@ class Granting {
   std::optional<FramePlace> next_in_line(WorkerId id, const Worker& worker, bool fresh);
   std::optional<FramePlace> next_of(const FairShare& share, WorkerId id, const Worker& worker,
                                     bool fresh, bool& begun);
-  Welcome welcome_at(const FramePlace& place, WorkerId id, const Worker& worker, bool fresh);
+  Suits suits_at(const FramePlace& place, WorkerId id, const Worker& worker, bool fresh);
   std::optional<uint32_t> find_pass(const ScheduledJob& job, WorkerId id, const Worker& worker,
                                     bool begun) const;
   std::optional<FramePlace> find_loaded(WorkerId id, const Worker& worker,

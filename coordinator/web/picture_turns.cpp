@@ -89,13 +89,13 @@ std::optional<PictureTurns::JobAndFrame> PictureTurns::begin_next() {
 
 /// What was spent for somebody: in the turn, then lately in all. Whoever has other turns meanwhile
 /// would never be next in this one, if what is spent in them counted before.
-PictureTurns::Spent PictureTurns::spent_for(const std::string& who, const Turn& turn,
+PictureTurns::Spent PictureTurns::spent_for(const std::string& who, const FrameTurn& turn,
                                             Clock::time_point now) const {
   return {turn.spent.used(who, now), shares_.used(who, now)};
 }
 
 /// Of those who have asked for a picture the one for whom least was spent: it is made for him.
-const std::string& PictureTurns::payer_of(const PictureAskers& askers, const Turn& turn,
+const std::string& PictureTurns::payer_of(const PictureAskers& askers, const FrameTurn& turn,
                                           Clock::time_point now) const {
   const auto spent = [&](const PictureAsker& asker) HYADES_NO_THREAD_SAFETY_ANALYSIS {
     return spent_for(asker.owner.name, turn, now);
@@ -111,7 +111,7 @@ WantedPictures::iterator PictureTurns::next_of(JobAndFrame id, WantedPictures& w
   return next_in(in_work_.at(id), wanted, Clock::now());
 }
 
-WantedPictures::iterator PictureTurns::next_in(const Turn& turn, WantedPictures& wanted,
+WantedPictures::iterator PictureTurns::next_in(const FrameTurn& turn, WantedPictures& wanted,
                                                Clock::time_point now) const {
   const auto spent = [&](const auto& one) HYADES_NO_THREAD_SAFETY_ANALYSIS {
     return spent_for(payer_of(one.second, turn, now), turn, now);
@@ -131,7 +131,7 @@ void PictureTurns::charge(JobAndFrame id, const PictureAskers& askers) {
 }
 
 void PictureTurns::charge_locked(JobAndFrame id, const std::string& whom) {
-  Turn& turn = in_work_.at(id);
+  FrameTurn& turn = in_work_.at(id);
   const Clock::time_point now = Clock::now();
   const std::chrono::duration<double> taken = now - std::exchange(turn.charged, now);
   if (whom.empty()) return;
@@ -142,7 +142,7 @@ void PictureTurns::charge_locked(JobAndFrame id, const std::string& whom) {
 bool PictureTurns::gives_way(JobAndFrame id, WantedPictures& wanted) {
   const core::MutexLock lock(mutex_);
   const Clock::time_point now = Clock::now();
-  const Turn& turn = in_work_.at(id);
+  const FrameTurn& turn = in_work_.at(id);
   if (now - turn.begun < longest_) return false;
   const Spent next = spent_for(payer_of(next_in(turn, wanted, now)->second, turn, now), turn, now);
   return std::any_of(queue_.begin(), queue_.end(), [&](const auto& one) HYADES_REQUIRES(mutex_) {

@@ -41,12 +41,12 @@ using PictureAskers = std::vector<PictureAsker>;
 /// The pictures that are wanted of a frame, and who waits for them.
 using WantedPictures = std::map<AskedPicture, PictureAskers>;
 
-/// Who waits for pictures of which frames, and whose turn it is. What is asked of a frame is made
-/// together, and of two frames at a time, for different callers: next is for whom lately least time
-/// was spent. Those who want pictures of the same frame share its turn: next is for whom least of
-/// it was spent. It ends between two pictures once it has lasted for long, and somebody waits for
-/// whom less was spent. A frame for which there is no memory beside the other one has its next turn
-/// alone. Makes nothing itself. Thread-safe.
+/// Who waits for pictures of which frames, and whose turn it is. A frame's turn makes all that is
+/// asked of it. Two frames are in work at a time, for different callers. The next turn is his for
+/// whom least time was spent lately. Within a turn those who want pictures of the frame share it:
+/// the next picture is his for whom least of the turn was spent. A turn ends between two pictures
+/// once it has lasted for long, and somebody waits for whom less was spent. A frame for which there
+/// is no memory beside the other one has its next turn alone. Makes nothing itself. Thread-safe.
 class PictureTurns {
  public:
   using JobAndFrame = std::pair<uint64_t, int32_t>;
@@ -88,7 +88,7 @@ class PictureTurns {
  private:
   using Clock = std::chrono::steady_clock;
   /// A frame in work.
-  struct Turn {
+  struct FrameTurn {
     std::string owner;  ///< by whom its turn has come
     Clock::time_point begun;
     Clock::time_point charged;  ///< until when its time is counted
@@ -108,11 +108,11 @@ class PictureTurns {
                        const std::string& owner);
   void line_up(JobAndFrame id, const std::string& owner) HYADES_REQUIRES(mutex_);
   bool has_turn(const std::string& owner, JobAndFrame id) const HYADES_REQUIRES(mutex_);
-  Spent spent_for(const std::string& who, const Turn& turn, Clock::time_point now) const
+  Spent spent_for(const std::string& who, const FrameTurn& turn, Clock::time_point now) const
       HYADES_REQUIRES(mutex_);
-  const std::string& payer_of(const PictureAskers& askers, const Turn& turn,
+  const std::string& payer_of(const PictureAskers& askers, const FrameTurn& turn,
                               Clock::time_point now) const HYADES_REQUIRES(mutex_);
-  WantedPictures::iterator next_in(const Turn& turn, WantedPictures& wanted,
+  WantedPictures::iterator next_in(const FrameTurn& turn, WantedPictures& wanted,
                                    Clock::time_point now) const HYADES_REQUIRES(mutex_);
   void charge_locked(JobAndFrame id, const std::string& whom) HYADES_REQUIRES(mutex_);
   void put_back(JobAndFrame id, const WantedPictures& left) HYADES_REQUIRES(mutex_);
@@ -127,7 +127,7 @@ class PictureTurns {
   /// Those of them for which there was no memory beside another: nothing else is begun beside them.
   std::set<JobAndFrame> alone_ HYADES_GUARDED_BY(mutex_);
   /// Those whose films or files are being read or shown.
-  std::map<JobAndFrame, Turn> in_work_ HYADES_GUARDED_BY(mutex_);
+  std::map<JobAndFrame, FrameTurn> in_work_ HYADES_GUARDED_BY(mutex_);
   farm::FairShares shares_ HYADES_GUARDED_BY(mutex_);  ///< seconds of turns, of callers
 };
 

@@ -34,34 +34,34 @@ size_t triangle_count(const Placement& p) {
 }
 
 /// How a placement gets into the world.
-enum class Way {
-  copied,    ///< as a member of a instancer, by its copies
+enum class Placing {
+  copied,    ///< as a member of an instancer, by its copies
   direct,    ///< in world space, in the top scene; vertices may move
   shared,    ///< in world space, in the still scene that frames share
   instance,  ///< its mesh, or its strands, have a scene of their own
 };
 
 /// Depends on the placements alone: never on what was built before. `inside_instancer`: they are
-/// what a instancer copies.
-std::vector<Way> choose_ways(const std::vector<Placement>& placements,
-                             const BuildThresholds& thresholds, bool inside_instancer) {
+/// what an instancer copies.
+std::vector<Placing> choose_placings(const std::vector<Placement>& placements,
+                                     const BuildThresholds& thresholds, bool inside_instancer) {
   std::map<MeshKey, size_t> uses;
   for (const Placement& p : placements) {
     if (p.shape.kind == Shape::Kind::mesh && (inside_instancer || p.instancer == nullptr)) {
       ++uses[mesh_key(p.shape)];
     }
   }
-  std::vector<Way> ways;
+  std::vector<Placing> placings;
   size_t still_triangles = 0;
   bool any_changes = false;
   for (const Placement& p : placements) {
     if (p.instancer != nullptr && !inside_instancer) {
-      ways.push_back(Way::copied);
+      placings.push_back(Placing::copied);
       continue;
     }
     any_changes = any_changes || p.changes_between_frames;
     if (p.shape.kind == Shape::Kind::curves) {
-      ways.push_back(Way::instance);
+      placings.push_back(Placing::instance);
       continue;
     }
     const bool mesh = p.shape.kind == Shape::Kind::mesh;
@@ -73,18 +73,18 @@ std::vector<Way> choose_ways(const std::vector<Placement>& placements,
     const bool rebuilt_often =
         p.changes_between_frames && !deforms && triangle_count(p) > thresholds.shared_triangles;
     if (mesh && (repeated || moves || rebuilt_often) && can_be_instanced(p)) {
-      ways.push_back(Way::instance);
+      placings.push_back(Placing::instance);
     } else if (moves || deforms || p.changes_between_frames) {
-      ways.push_back(Way::direct);
+      placings.push_back(Placing::direct);
     } else {
-      ways.push_back(Way::shared);
+      placings.push_back(Placing::shared);
       still_triangles += triangle_count(p);
     }
   }
   if (!any_changes || still_triangles <= thresholds.shared_triangles) {
-    std::replace(ways.begin(), ways.end(), Way::shared, Way::direct);
+    std::replace(placings.begin(), placings.end(), Placing::shared, Placing::direct);
   }
-  return ways;
+  return placings;
 }
 
 /// Makes the object of a placement in world space.
@@ -118,8 +118,9 @@ class WorldBuilder {
 
  private:
   Status build_parts(std::vector<Placement> placements, const BuildThresholds& thresholds) {
-    const std::vector<Way> ways = choose_ways(placements, thresholds, inside_instancer_);
-    if (Status s = add_shared(placements, ways); !s) return s.error();
+    const std::vector<Placing> placings =
+        choose_placings(placements, thresholds, inside_instancer_);
+    if (Status s = add_shared(placements, placings); !s) return s.error();
     parts_.objects.resize(placements.size());
     if (parts_.still != nullptr) {
       for (const NumberedObject& o : parts_.still->objects) parts_.objects[o.number] = o.object;
@@ -129,15 +130,15 @@ class WorldBuilder {
     }
     std::vector<std::shared_ptr<const MeshScene>> instanced(placements.size());
     for (size_t i = 0; i < placements.size(); ++i) {
-      if (ways[i] == Way::direct) parts_.objects[i] = make_direct(std::move(placements[i]));
-      if (ways[i] != Way::instance) continue;
+      if (placings[i] == Placing::direct) parts_.objects[i] = make_direct(std::move(placements[i]));
+      if (placings[i] != Placing::instance) continue;
       auto mesh = mesh_scene(placements[i].shape);
       if (!mesh) return mesh.error();
       instanced[i] = *mesh;
       parts_.objects[i] =
           std::make_shared<const PlacedObject>(std::move(placements[i]), (*mesh)->buffers);
     }
-    return build_top(ways, instanced);
+    return build_top(placings, instanced);
   }
 
   /// Each run of placements with the same instancer.
@@ -184,10 +185,11 @@ class WorldBuilder {
   }
 
   /// Finds the still scene of the frame before or makes one.
-  Status add_shared(const std::vector<Placement>& placements, const std::vector<Way>& ways) {
+  Status add_shared(const std::vector<Placement>& placements,
+                    const std::vector<Placing>& placings) {
     std::vector<uint32_t> numbers;
-    for (size_t i = 0; i < ways.size(); ++i) {
-      if (ways[i] == Way::shared) numbers.push_back(static_cast<uint32_t>(i));
+    for (size_t i = 0; i < placings.size(); ++i) {
+      if (placings[i] == Placing::shared) numbers.push_back(static_cast<uint32_t>(i));
     }
     if (numbers.empty()) return {};
     parts_.still = cache_.still.lock();
@@ -237,23 +239,23 @@ class WorldBuilder {
     return std::shared_ptr<const MeshScene>(std::move(fresh));
   }
 
-  Status build_top(const std::vector<Way>& ways,
+  Status build_top(const std::vector<Placing>& placings,
                    const std::vector<std::shared_ptr<const MeshScene>>& instanced) {
     const auto builder = make_scene_builder(which_);
-    for (size_t i = 0; i < ways.size(); ++i) {
+    for (size_t i = 0; i < placings.size(); ++i) {
       const PlacedObject& object = *parts_.objects[i];
       const auto number = static_cast<uint32_t>(i);
-      if (ways[i] == Way::direct) attach_direct(*builder, object, number);
-      if (ways[i] == Way::instance) {
+      if (placings[i] == Placing::direct) attach_direct(*builder, object, number);
+      if (placings[i] == Placing::instance) {
         builder->add_instance(*instanced[i]->scene, object, mask_of(object.placement()), number);
       }
     }
     if (parts_.still != nullptr) {
-      builder->add_scene(*parts_.still->scene, static_cast<uint32_t>(ways.size()));
+      builder->add_scene(*parts_.still->scene, static_cast<uint32_t>(placings.size()));
     }
     for (size_t i = 0; i < parts_.instancers.size(); ++i) {
       builder->add_scene(parts_.instancers[i].scene->scene(),
-                         static_cast<uint32_t>(ways.size() + 1 + i));
+                         static_cast<uint32_t>(placings.size() + 1 + i));
     }
     auto top = builder->commit();
     if (!top) return top.error();
@@ -274,7 +276,7 @@ class WorldBuilder {
 
   MadeGeometry& cache_;
   RenderClass which_;
-  bool inside_instancer_ = false;  ///< what is built is what a instancer copies
+  bool inside_instancer_ = false;  ///< what is built is what an instancer copies
   WorldParts parts_;
   std::set<const MeshScene*> used_;  ///< those in parts_.mesh_scenes
 };

@@ -16,7 +16,7 @@ namespace hyades::core {
 namespace {
 
 using Path = GltfChannel::Path;
-using Way = GltfChannel::Way;
+using Interpolation = GltfChannel::Interpolation;
 
 void normalize4(float* q) {
   const float length = std::sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
@@ -59,7 +59,7 @@ size_t width_of(Path path, const GltfModel& model, int node) {
 Result<GltfTrack> read_track(const GltfModel& model, const GltfChannel& channel, size_t width) {
   GltfTrack track;
   track.path = channel.path;
-  track.way = channel.way;
+  track.interpolation = channel.interpolation;
   track.width = width;
   auto times = read_floats(model, channel.input, 1);
   if (!times) return times.error();
@@ -72,7 +72,7 @@ Result<GltfTrack> read_track(const GltfModel& model, const GltfChannel& channel,
     return model.error(channel.place + " " + what);
   };
   if (n == 0) return wrong("has no keys");
-  const size_t expected = n * width * (channel.way == Way::cubic ? 3 : 1);
+  const size_t expected = n * width * (channel.interpolation == Interpolation::cubic ? 3 : 1);
   if (track.values.size() != expected) {
     return wrong(
         fmt::format("has {} keys and {} numbers, expected {}", n, track.values.size(), expected));
@@ -84,7 +84,7 @@ Result<GltfTrack> read_track(const GltfModel& model, const GltfChannel& channel,
                                track.times[i]));
     }
   }
-  if (channel.path == Path::rotation && channel.way != Way::cubic) {
+  if (channel.path == Path::rotation && channel.interpolation != Interpolation::cubic) {
     for (size_t i = 0; i < n; ++i) normalize4(track.values.data() + 4 * i);
   }
   return track;
@@ -93,14 +93,14 @@ Result<GltfTrack> read_track(const GltfModel& model, const GltfChannel& channel,
 }  // namespace
 
 const float* GltfTrack::key(size_t i) const {
-  return values.data() + (way == Way::cubic ? (3 * i + 1) * width : i * width);
+  return values.data() + (interpolation == Interpolation::cubic ? (3 * i + 1) * width : i * width);
 }
 
 bool GltfTrack::is_still() const {
   for (size_t i = 1; i < times.size(); ++i) {
     if (!std::equal(key(i), key(i) + width, key(0))) return false;
   }
-  if (way != Way::cubic) return true;
+  if (interpolation != Interpolation::cubic) return true;
   for (size_t i = 0; i < times.size(); ++i) {
     const auto zero = [](float x) { return x == 0.0F; };
     if (!std::all_of(key(i) - width, key(i), zero)) return false;
@@ -113,7 +113,7 @@ void GltfTrack::at(double time, float* out) const {
   const auto t = static_cast<float>(time);
   const auto after = std::upper_bound(times.begin(), times.end(), t);
   const size_t next = static_cast<size_t>(after - times.begin());
-  if (next == 0 || next == times.size() || way == Way::step) {
+  if (next == 0 || next == times.size() || interpolation == Interpolation::step) {
     std::copy_n(key(next == 0 ? 0 : next - 1), width, out);
     if (path == Path::rotation) normalize4(out);
     return;
@@ -123,7 +123,7 @@ void GltfTrack::at(double time, float* out) const {
   const float u = span > 0.0F ? (t - times[before]) / span : 0.0F;
   const float* a = key(before);
   const float* b = key(next);
-  if (way == Way::cubic) {
+  if (interpolation == Interpolation::cubic) {
     // Hermite's cubic (glTF 2.0, appendix C.5); tangents are per second.
     const float u2 = u * u;
     const float u3 = u2 * u;

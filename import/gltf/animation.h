@@ -13,7 +13,7 @@ namespace hyades::core {
 /// How one property of a node moves: keyed values.
 struct GltfTrack {
   GltfChannel::Path path = GltfChannel::Path::translation;
-  GltfChannel::Way way = GltfChannel::Way::linear;
+  GltfChannel::Interpolation interpolation = GltfChannel::Interpolation::linear;
   size_t width = 3;           ///< numbers of a value
   std::vector<float> times;   ///< [s], ascending, at least one
   std::vector<float> values;  ///< width each; cubic: in-tangent, value, out-tangent each

@@ -119,7 +119,8 @@ struct GltfChannel {
   enum class Path : uint8_t { translation, rotation, scale, weights } path = Path::translation;
   int input = -1;   ///< accessor: times [s]
   int output = -1;  ///< accessor: values
-  enum class Way : uint8_t { linear, step, cubic } way = Way::linear;
+  enum class Interpolation : uint8_t { linear, step, cubic };
+  Interpolation interpolation = Interpolation::linear;
 };
 
 struct GltfAnimation {

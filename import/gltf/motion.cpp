@@ -14,7 +14,7 @@ namespace hyades::core {
 namespace {
 
 using Path = GltfChannel::Path;
-using Way = GltfChannel::Way;
+using Interpolation = GltfChannel::Interpolation;
 
 std::string frame_text(double frame) { return fmt::format("{}", static_cast<float>(frame)); }
 
@@ -55,7 +55,8 @@ class Keys {
 YamlPtr track_keys(const GltfTrack& track, const GltfFrames& frames) {
   std::vector<float> value(track.width);
   Keys keys(frames);
-  if (track.way == Way::cubic || track.times.size() > static_cast<size_t>(4 * frames.last)) {
+  if (track.interpolation == Interpolation::cubic ||
+      track.times.size() > static_cast<size_t>(4 * frames.last)) {
     keys.put_each([&](double frame) {
       track.at(frames.time(frame), value.data());
       return yaml_numbers(value);
@@ -72,7 +73,7 @@ YamlPtr track_keys(const GltfTrack& track, const GltfFrames& frames) {
     keys.put(1.0 + static_cast<double>(track.times[i]) * static_cast<double>(frames.fps), key(i));
   }
   if (frames.loop()) keys.put(frames.seam, key(track.times.size() - 1));
-  return keys.node(track.way == Way::step ? "step" : nullptr);
+  return keys.node(track.interpolation == Interpolation::step ? "step" : nullptr);
 }
 
 /// The steps of a node that moves, in its parent's space.

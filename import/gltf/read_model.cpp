@@ -127,9 +127,9 @@ GltfChannel read_channel(const JsonValue& value, const std::vector<JsonValue>& s
   out.output = sampler.required_index("output", model.accessors.size());
   const std::string way = sampler.text("interpolation");
   if (way == "STEP") {
-    out.way = GltfChannel::Way::step;
+    out.interpolation = GltfChannel::Interpolation::step;
   } else if (way == "CUBICSPLINE") {
-    out.way = GltfChannel::Way::cubic;
+    out.interpolation = GltfChannel::Interpolation::cubic;
   } else if (!way.empty() && way != "LINEAR") {
     sampler.complain("has interpolation '" + way + "', expected LINEAR, STEP or CUBICSPLINE");
   }

@@ -34,7 +34,7 @@ export const ACTIONS = {
     text: 'Retry',
     icon: 'retry',
     fits: (job) => job.state === 'failed' || job.state === 'cancelled' || job.frames_failed > 0 || job.doubtful > 0,
-    done: 'taken up again',
+    done: 'retried',
     what: () => 'Failed frames, frames in doubt and what was cancelled are rendered again. Finished frames stay.',
   },
   delete: {

@@ -172,7 +172,7 @@ class Farm:
         return self._steer(job, "cancel")
 
     def retry(self, job: JobId) -> JobState:
-        """Takes up failed and doubtful frames, or what a cancelled job has left."""
+        """Renders failed and doubtful frames again, or what a cancelled job has left."""
         return self._steer(job, "retry")
 
     def set_priority(self, job: JobId, priority: int) -> JobState:

@@ -109,9 +109,9 @@ TEST_F(Client, OfNamesakesTheOpenOneOrTheNewestIsMeant) {
   EXPECT_EQ(farm_.jobs[1].priority(), 9);
   const Ran again = run(retry_command, at({"ocean", "--json"}));
   EXPECT_EQ(json::parse(again.out)[0]["id"], 3) << again.err;
-  EXPECT_TRUE(has(again.err, "this is job 3, the only one with something to take up"));
+  EXPECT_TRUE(has(again.err, "this is job 3, the only one with something to retry"));
   farm_.jobs[2].set_state(v1::JOB_STATE_DONE);
-  EXPECT_EQ(run(retry_command, at({"ocean"})).status, kBadArguments) << "nothing to take up";
+  EXPECT_EQ(run(retry_command, at({"ocean"})).status, kBadArguments) << "nothing to retry";
   farm_.jobs[1].set_frames_failed(1);
   EXPECT_EQ(json::parse(run(retry_command, at({"ocean", "--json"})).out)[0]["id"], 2);
   EXPECT_EQ(run(delete_command, at({"ocean"})).status, kBadArguments);

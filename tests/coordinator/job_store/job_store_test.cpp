@@ -283,9 +283,9 @@ TEST_F(DivergentWorkers, MakeWhatTheyHadAPartInDoubtful) {
   done(1, 6, 13, {});                   // all of it was rendered twice
   done(2, 4, 14, {"divergent-worker"});
   EXPECT_EQ(mark_divergent(1, 0), (std::vector<int32_t>{4, 5}));
-  EXPECT_EQ(*store_->doubtful(1, 10), (std::vector<int32_t>{4, 5}));
-  EXPECT_EQ(*store_->doubtful(2, 10), std::vector<int32_t>{4}) << "it has ended";
-  EXPECT_TRUE(store_->doubtful(3, 10)->empty());
+  EXPECT_EQ(*store_->suspect_frames(1, 10), (std::vector<int32_t>{4, 5}));
+  EXPECT_EQ(*store_->suspect_frames(2, 10), std::vector<int32_t>{4}) << "it has ended";
+  EXPECT_TRUE(store_->suspect_frames(3, 10)->empty());
   EXPECT_EQ(store_->lines(1, 0, 10)->at(0).text, "frames 4-5");
   EXPECT_EQ(store_->lines(2, 0, 10)->at(0).text, "frames 4");
   EXPECT_TRUE(mark_divergent(1, 0).empty()) << "nothing new";
@@ -293,10 +293,10 @@ TEST_F(DivergentWorkers, MakeWhatTheyHadAPartInDoubtful) {
   store_.reset();
   store_ = open(path_);
   EXPECT_EQ(store_->quarantines()->at(0).worker, "divergent-worker");
-  EXPECT_TRUE(store_->frames(1)->at(1).doubtful);
+  EXPECT_TRUE(store_->frames(1)->at(1).suspect);
   done(1, 4, 20, {"good-worker"});  // again
   ASSERT_TRUE(store_->forget_frames(1, std::vector<int32_t>{5}).ok());
-  EXPECT_TRUE(store_->doubtful(1, 10)->empty());
+  EXPECT_TRUE(store_->suspect_frames(1, 10)->empty());
   EXPECT_TRUE(mark_divergent(1, 0).empty());
 }
 
@@ -378,7 +378,7 @@ TEST(JobStore, FilesOfTheFirstSchemasAreBroughtUpToDate) {
   auto store = open(path);
   const auto frames = store->frames(1);
   ASSERT_EQ(frames->size(), 1U);
-  EXPECT_FALSE(frames->at(0).doubtful);
+  EXPECT_FALSE(frames->at(0).suspect);
   EXPECT_FALSE(frames->at(0).black);
   EXPECT_EQ((*store->job(1))->spec, some_job("", "ada").spec);
   EXPECT_EQ((*store->job(1))->core_ns, 0U);

@@ -154,7 +154,7 @@ TEST_F(LargeJobs, AreGoneAtOnceForAllWhoAsk) {
     EXPECT_FALSE(store_->output(1, "film.mp4.frames/000000.png")->has_value());
     EXPECT_TRUE(store_->lines(1, 0, 100)->empty());
     EXPECT_TRUE(store_->mark_divergent({"worker", "why"}, 0, {})->empty());
-    EXPECT_TRUE(store_->doubtful(1, 10)->empty());
+    EXPECT_TRUE(store_->suspect_frames(1, 10)->empty());
     EXPECT_FALSE(store_->add_lines(1, std::vector<StoredLine>(1)).ok());
     EXPECT_FALSE(store_->change_outputs(1, {}, many_outputs(1)).ok());
   };
@@ -297,12 +297,12 @@ TEST_F(LargeJobs, AreLookedThroughInTurnsWithOthersForWhatAWorkerDid) {
   others.join();
   ASSERT_EQ(suspects.size(), 2U);
   EXPECT_EQ(suspects[1].frames.size(), static_cast<size_t>(kMany) / 1000);
-  // Of the others all up to some moment are doubtful, and it was not the first.
+  // Of the others all up to some moment are suspect, and it was not the first.
   const auto frames = store_->frames(1);
-  size_t doubtful = 0;
-  while (doubtful < frames->size() && frames->at(doubtful).doubtful) ++doubtful;
-  EXPECT_GT(doubtful, 1U);
-  EXPECT_EQ(suspects[0].frames.size(), doubtful) << "none after one that is not";
+  size_t suspect = 0;
+  while (suspect < frames->size() && frames->at(suspect).suspect) ++suspect;
+  EXPECT_GT(suspect, 1U);
+  EXPECT_EQ(suspects[0].frames.size(), suspect) << "none after one that is not";
 }
 
 }  // namespace

@@ -145,7 +145,7 @@ void SimulatedWorld::store(const DivergentWorkerRecord& divergent) {
           std::find(by.begin(), by.end(), WorkerId{}) == by.end()) {
         continue;
       }
-      row.doubtful = true;
+      row.suspect = true;
       suspected.frames.push_back(frame);
     }
     if (suspected.frames.empty() || job.ended) continue;
@@ -158,9 +158,9 @@ void SimulatedWorld::store(const DivergentWorkerRecord& divergent) {
 void SimulatedWorld::check_rows() {
   for (const auto& [id, job] : jobs_) {
     for (const auto& [frame, row] : job.rows) {
-      left_suspect += row.doubtful;
+      left_suspect += row.suspect;
       for (const uint8_t by : row.corrupted_by) {
-        if (workers_[by - 1U].known_divergent && !row.doubtful) {
+        if (workers_[by - 1U].known_divergent && !row.suspect) {
           fail("outputs show what a divergent worker did, and nobody knows");
         }
       }

@@ -87,7 +87,7 @@ struct SimFrame {
 struct SimRow {
   std::vector<WorkerId> unconfirmed;  ///< as FinishFrame said
   std::set<uint8_t> corrupted_by;     ///< whose wrong films its outputs show
-  bool doubtful = false;
+  bool suspect = false;
 };
 
 struct SimJob {

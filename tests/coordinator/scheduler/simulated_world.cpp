@@ -124,7 +124,7 @@ void SimulatedWorld::start_coordinator() {
     if (real_store_) take_up(job);
     // What is suspect is rendered again; a frame without a row is not done, whatever its log says.
     frames_suspected += static_cast<uint64_t>(
-        std::erase_if(job.rows, [](const auto& row) { return row.second.doubtful; }));
+        std::erase_if(job.rows, [](const auto& row) { return row.second.suspect; }));
     std::erase_if(job.stored.finished, [&](int32_t f) { return !job.rows.contains(f); });
     for (auto& [number, frame] : job.frames) {
       frame.batches.clear();

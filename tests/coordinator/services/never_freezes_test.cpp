@@ -265,7 +265,7 @@ TEST_F(NeverFreezes, WhileTheOutputsOfARetriedJobAreLookedAt) {
   ASSERT_TRUE(eventually([&] { return trouble->waiting() > 0; }));
   EXPECT_TRUE(remove(other, 1500ms).ok());
   world.submit(1);
-  // Nobody takes it away meanwhile, or up once more.
+  // Nobody removes it meanwhile, or recovers it once more.
   EXPECT_EQ(remove(job).error_code(), grpc::StatusCode::UNAVAILABLE);
   EXPECT_EQ(retry(job).error_code(), grpc::StatusCode::UNAVAILABLE);
   EXPECT_EQ(cancel(job).error_code(), grpc::StatusCode::UNAVAILABLE);
@@ -418,7 +418,7 @@ TEST_F(NeverFreezes, AJobThatCannotBeTakenUpNowWaitsAndSaysWhy) {
   v1::ExplainResponse why;
   ASSERT_TRUE(world.jobs->Explain(world.context().get(), about(job), &why).ok());
   ASSERT_EQ(why.reasons_size(), 1);
-  EXPECT_NE(why.reasons(0).find("waits to be taken up again"), std::string::npos) << why.reasons(0);
+  EXPECT_NE(why.reasons(0).find("waits to be recovered"), std::string::npos) << why.reasons(0);
   v1::JobResponse paused;
   const grpc::Status refused = world.jobs->Pause(world.context().get(), about(job), &paused);
   EXPECT_EQ(refused.error_code(), grpc::StatusCode::FAILED_PRECONDITION) << "who comes again waits";
@@ -477,7 +477,7 @@ TEST_F(NeverFreezes, AJobThatWaitsToBeTakenUpCanBeCancelled) {
   trouble->of_frames(Trouble::Kind::none);
   const auto busy = worker();
   EXPECT_TRUE(world.wait_for(last, v1::JOB_STATE_DONE));
-  EXPECT_EQ(world.get(job).job().state(), v1::JOB_STATE_CANCELLED) << "taken up all the same";
+  EXPECT_EQ(world.get(job).job().state(), v1::JOB_STATE_CANCELLED) << "recovered all the same";
   EXPECT_TRUE(retry(job).ok());
   EXPECT_TRUE(world.wait_for(job, v1::JOB_STATE_DONE));
 }

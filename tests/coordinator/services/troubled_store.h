@@ -181,8 +181,8 @@ class TroubledStore final : public JobStore {
                                                           const StoredLine& line) override {
     return written([&] { return store_->mark_divergent(worker, since, line); });
   }
-  core::Result<std::vector<int32_t>> doubtful(uint64_t job, uint32_t limit) override {
-    return read([&] { return store_->doubtful(job, limit); });
+  core::Result<std::vector<int32_t>> suspect_frames(uint64_t job, uint32_t limit) override {
+    return read([&] { return store_->suspect_frames(job, limit); });
   }
   core::Result<std::vector<int32_t>> black(uint64_t job, uint32_t limit) override {
     return read([&] { return store_->black(job, limit); });
