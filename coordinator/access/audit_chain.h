@@ -10,8 +10,8 @@
 namespace hyades::coordinator {
 
 // The lines of the audit log. Each entry holds the digest of the one before it in its log
-// (AuditEntry::previous), so that none can be changed, left out or put in between without all that
-// follow being written anew; and then the last digest is another than anybody has noted.
+// (AuditEntry::previous). Whoever changes one, leaves one out or puts one in between has to write
+// all that follow anew. Then the last digest is another than anybody has noted.
 
 /// The entry as it stands in its file, without an end of line; where it is read from
 /// (AuditEntry::log) does not.

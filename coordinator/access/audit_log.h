@@ -37,9 +37,9 @@ struct AuditOptions {
 /// Who did what: lines of JSON that are only ever added to. Nobody who notes something waits: a
 /// thread writes and syncs, within milliseconds where the disk answers. Thread-safe.
 ///
-/// Actions, refusals (of actions that failed, too) and uploads have files and room of their own, so
-/// that many refusals, which any stranger can cause, or many uploads never push out an action that
-/// somebody needs to know of; nor do many actions by one token.
+/// Actions, refusals (of actions that failed, too) and uploads have files and room of their own.
+/// Any stranger can cause many refusals: neither these nor many uploads push out an action that
+/// somebody needs to know of. Nor do many actions by one token.
 class AuditLog {
  public:
   /// An error where the folder cannot be written to.

@@ -22,10 +22,11 @@ struct FreshToken {
   StoredToken row;
 };
 
-/// Makes a token as it is asked for. An error where the name, or a pool, is not 1 to 64 letters,
-/// digits, '-', '_', '.' or '@', the role is none, another role than a worker's has a pool or
-/// machines, or the lifetime is negative or longer than a hundred years; or where the system gives
-/// no random numbers.
+/// Makes a token as it is asked for. Errors:
+/// - the name, or a pool, is not 1 to 64 letters, digits, '-', '_', '.' or '@';
+/// - the role is none, or another role than a worker's has a pool or machines;
+/// - the lifetime is negative, or longer than a hundred years;
+/// - the system gives no random numbers.
 core::Result<FreshToken> make_token(const v1::CreateTokenRequest& asked, int64_t now_ms);
 
 /// The public part of a token; nothing where `text` is none of this farm's kind.

@@ -9,9 +9,9 @@
 
 namespace hyades::coordinator {
 
-/// Neighbourhoods of which somebody has shown a token lately, and which: of each token the last
-/// thousands of them at least, and those of a day, so that who shows one token from everywhere
-/// pushes out nobody else's. Knows no clock. Not thread-safe.
+/// Neighbourhoods of which somebody has shown a token lately, and which token that was. Of each
+/// token the last thousands of them are kept at least, and those of a day. So who shows one token
+/// from everywhere pushes out nobody else's. Knows no clock. Not thread-safe.
 class TrustedNeighbours {
  public:
   using Time = std::chrono::steady_clock::time_point;

@@ -12,8 +12,8 @@ namespace hyades::coordinator {
 /// Proofs that a unit was leased to a worker: it travels with the lease, comes back with the film,
 /// and needs no memory of ours. So films are taken late, and over restarts, but never such as
 /// nobody was asked for. A proof tells which batches were leased, as a worker that leaves may
-/// deliver the first of them alone, and holds a code (HMAC-SHA-256, RFC 2104) of that, the worker,
-/// the job, the frame and the tile, of which 128 bits are enough.
+/// deliver the first of them alone. It holds a code (HMAC-SHA-256, RFC 2104) of these batches, the
+/// worker, the job, the frame and the tile. 128 bits of the code are enough.
 class LeaseProofs {
  public:
   /// `secret`: of this farm (JobStore::secret()).

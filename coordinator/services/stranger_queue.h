@@ -17,13 +17,15 @@
 
 namespace hyades::coordinator {
 
-/// Who of those that nobody knows yet may come in, who waits, and who has to go: bounds in all and
-/// for each neighbourhood (neighbourhood_of()). Some places are kept for neighbourhoods that are
-/// trusted, of which somebody has shown a token lately, so that no crowd of others keeps a farm's
-/// own machines out. Neighbourhoods take turns; those of one token, and those that may be one
-/// (Neighbour::group), have one turn together, so that they make no crowd that comes before others.
-/// Who gives up while he waits, as clients do that try again, keeps his turn. Knows no sockets and
-/// no clock. Not thread-safe.
+/// Who of those that nobody knows yet may come in, who waits, and who has to go. There are bounds
+/// in all and for each neighbourhood (neighbourhood_of()). A neighbourhood is trusted if somebody
+/// has shown a token from there lately. Some places are kept for these, so that no crowd of others
+/// keeps a farm's own machines out.
+///
+/// Neighbourhoods take turns. Those of one token have one turn together, as have those that may be
+/// one (Neighbour::group): so they make no crowd that comes before others. Who gives up while he
+/// waits, as clients do that try again, keeps his turn. Knows no sockets and no clock. Not
+/// thread-safe.
 class StrangerQueue {
  public:
   using Id = uint64_t;

@@ -24,11 +24,11 @@ class Authenticator {
   /// cookies to all its ports.
   void set_port(uint16_t port);
 
-  /// OK, with who asks in `caller` by a connection with that end of ours; UNAUTHENTICATED; or
-  /// PERMISSION_DENIED for requests that another site's page has made, or, where no token guards,
-  /// that came by a name which a stranger may have led here (DNS rebinding). No stranger can have
-  /// an address, a name without a dot, one below .local, .localhost, .internal or home.arpa, or
-  /// this machine's own name; others have to be among `names`.
+  /// OK, with who asks in `caller`, by a connection with that end of ours; or UNAUTHENTICATED. A
+  /// request that another site's page has made is PERMISSION_DENIED. So is, where no token guards,
+  /// one that came by a name which a stranger may have led here (DNS rebinding). No stranger can
+  /// have an address, a name without a dot, one below .local, .localhost, .internal or home.arpa,
+  /// or this machine's own name; other names have to be among `names`.
   grpc::Status check(const WebRequest& request, const OwnEnd& own, Caller& caller) const;
 
   /// Opens a session for who shows this token: the value of the header Set-Cookie; or nothing, with
