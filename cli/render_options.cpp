@@ -17,7 +17,6 @@
 #include "cli/film_size_option.h"
 #include "cli/frame_range.h"
 #include "cli/number_range.h"
-#include "cli/preview.h"
 #include "cli/whole_numbers.h"
 #include "cli/written_file.h"
 #include "core/job/film_file.h"
@@ -26,6 +25,8 @@
 
 namespace hyades::cli {
 namespace {
+
+constexpr uint32_t kPreviewSamples = 32;
 
 /// A check for options of CLI11 out of what parses their text.
 template <auto Parse>
@@ -59,6 +60,29 @@ bool cuts_judged_tiles(const core::PixelRect& part, const core::PixelRect& whole
   };
   return cuts(part.x0, whole.x0, whole.x1) || cuts(part.x1, whole.x0, whole.x1) ||
          cuts(part.y0, whole.y0, whole.y1) || cuts(part.y1, whole.y0, whole.y1);
+}
+
+/// Makes small pictures of `job`: `width` pixels wide, of the whole frame, with few samples,
+/// denoised; one PNG, NAME.preview.png (NAME.####.preview.png where there are several frames),
+/// shown as the job's first output that is no EXR.
+void make_preview(core::Job& job, int width) {
+  core::FilmDesc& film = job.film;
+  const int64_t height = (int64_t{film.height} * width + film.width / 2) / film.width;
+  film.height = static_cast<int32_t>(std::clamp<int64_t>(height, 1, 65536));
+  film.width = width;
+  film.crop.reset();
+  job.sampling.samples = kPreviewSamples;
+  job.sampling.noise = 0.0F;
+  job.keep_films = false;
+
+  core::OutputDesc preview;
+  if (const core::OutputDesc* shown = core::display_output(job)) preview.tone_map = shown->tone_map;
+  preview.exposure = core::shown_exposure(job);
+  const char* const marks = job.frames.first == job.frames.last ? "" : ".####";
+  preview.file = job.name + marks + ".preview.png";
+  preview.denoise = "true";
+  job.outputs = {preview};
+  job.videos.clear();
 }
 
 /// ".tile-2-of-3.samples-0-31"

@@ -1,8 +1,13 @@
 #include "farm/channel.h"
 
 #include <cstddef>
+#include <cstdlib>
+#include <string_view>
 #include <utility>
 
+#include <absl/synchronization/mutex.h>
+#include <fmt/format.h>
+#include <grpc/support/log.h>
 #include <grpcpp/channel.h>
 #include <grpcpp/client_context.h>
 #include <grpcpp/create_channel.h>
@@ -11,7 +16,7 @@
 #include <grpcpp/security/tls_certificate_provider.h>
 #include <grpcpp/security/tls_credentials_options.h>
 
-#include "farm/grpc_log.h"
+#include "farm/log.h"
 #include "farm/small_file.h"
 #include "farm/tls_files.h"
 #include "farm/wire.h"
@@ -26,6 +31,22 @@ constexpr size_t kShortestToken = 16;
 constexpr unsigned kReadAgainSeconds = 2;
 constexpr int kKeepaliveMs = 20'000;
 constexpr int kKeepaliveTimeoutMs = 10'000;
+
+/// A failed assertion ends the process: that has to be seen.
+void say_last_words(gpr_log_func_args* line) {
+  if (std::string_view(line->message).find("ASSERTION FAILED") == std::string_view::npos) return;
+  log(LogLevel::error, fmt::format("{}:{}: {}", line->file, line->line, line->message));
+}
+
+/// Keeps gRPC's own lines off standard error: what goes wrong is told in our words, once. Whoever
+/// looks for a fault of gRPC sets GRPC_VERBOSITY or GRPC_TRACE, and has them all. Idempotent.
+void quiet_grpc() {
+  // Debian's library looks for cycles in the order of locks, at each of gRPC's: that costs more
+  // than the calls themselves where there are many.
+  absl::SetMutexDeadlockDetectionMode(absl::OnDeadlockCycle::kIgnore);
+  if (std::getenv("GRPC_VERBOSITY") != nullptr || std::getenv("GRPC_TRACE") != nullptr) return;
+  gpr_set_log_function(say_last_words);
+}
 
 /// Reads the files again and again; empty names are none.
 std::shared_ptr<tls::CertificateProviderInterface> watch(const std::string& ca_file,

@@ -26,6 +26,7 @@ using Rgb = glm::vec3;
 
 inline constexpr float kPi = 3.14159265358979323846F;
 inline constexpr float kInvPi = 0.318309886183790671538F;
+inline constexpr float kRadians = kPi / 180.0F;  ///< in a degree
 
 /// M applied to a point (translation included, no perspective division).
 inline Vec3 transform_point(const Mat4& m, const Vec3& p) { return Vec3(m * Vec4(p, 1.0F)); }

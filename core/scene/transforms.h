@@ -9,9 +9,6 @@
 
 namespace hyades::core {
 
-/// Radians in a degree.
-inline constexpr float kRadians = kPi / 180.0F;
-
 /// The matrix of a transform list followed by the translation `at`, at one moment. Steps apply top
 /// to bottom.
 Mat4 transform_at(const TransformList& steps, const Animated<Vec3>& at, const JobTime& time);

@@ -10,8 +10,6 @@
 namespace hyades::core {
 namespace {
 
-constexpr float kTwoPi = 2.0F * kPi;
-
 /// One octave at `p`.
 Noise3 octave_at(const Vec3& p, const Octave& octave, const std::optional<float>& time) {
   const Vec3 place = p * octave.frequency + Vec3(octave.shift);
@@ -80,9 +78,9 @@ class Marble final : public Pattern {
 
   Noise3 at(const Vec3& p) const override {
     const Noise3 n = fbm_of(desc_, p);
-    const auto [s, c] = sin_cos(kTwoPi * (p.x + distortion_ * n.value));
+    const auto [s, c] = sin_cos(2.0F * kPi * (p.x + distortion_ * n.value));
     const Vec3 bent = Vec3(1.0F, 0.0F, 0.0F) + distortion_ * n.gradient;
-    return {0.5F + 0.5F * s, (0.5F * kTwoPi * c) * bent};
+    return {0.5F + 0.5F * s, (kPi * c) * bent};
   }
 
  private:

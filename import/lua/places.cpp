@@ -9,6 +9,7 @@
 #include <glm/gtc/matrix_transform.hpp>
 
 #include "core/base/elementary.h"
+#include "core/base/vec.h"
 #include "import/lua/list_item.h"
 #include "import/lua/machine.h"
 #include "import/mass_copies.h"
@@ -19,7 +20,6 @@ namespace {
 
 constexpr std::array<std::string_view, 5> kKeys = {"at", "scale", "rotate_x", "rotate_y",
                                                    "rotate_z"};
-constexpr float kRadians = 0.017453292519943295F;
 
 /// One table of the list, on top of the stack.
 class Copy : public ListItem {
