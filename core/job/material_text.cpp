@@ -31,6 +31,7 @@ constexpr OldLine kOldMaterialLines[] = {
     {"sides", nullptr, "4:both"},
     {"bump.texture"},
     {"bump.height"},
+    {"bump.strength", nullptr, "3f800000"},
     {"colored"},
     {"edge"},
     {"transmitted"},
@@ -69,10 +70,11 @@ bool has_old_line(std::string_view key) {
 std::vector<FieldWriter::Line> old_lines_of(FieldWriter& out, const MaterialDesc& material) {
   auto lines = lines_of(out, material);
   if (std::holds_alternative<PrincipledDesc>(material.kind)) {
-    // Its roughness and ior were those of all types.
+    // Its roughness and ior were those of all types; what it does with facets was not to be chosen.
+    std::erase(lines, FieldWriter::Line{"multiple_scattering", "1"});
     for (FieldWriter::Line& line : lines) {
       const std::string inner = "principled." + line.key;
-      if (has_old_line(inner)) line.key = inner;
+      if (has_old_line(inner) || line.key == "multiple_scattering") line.key = inner;
     }
   }
   if (const auto* metal = std::get_if<ConductorDesc>(&material.kind)) {

@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include "core/base/hash.h"
 #include "core/job/parse.h"
 #include "core/job/render_key.h"
 #include "core/job/resolved_text.h"
@@ -109,6 +110,46 @@ TEST(RenderKey, TextIsOneFieldPerLine) {
   EXPECT_NE(text.find("\nframe=12\n"), std::string::npos);
   EXPECT_NE(text.find("\ncamera.fov=42200000\n"), std::string::npos);  // the bits of 40
   EXPECT_EQ(text.find("secret"), std::string::npos);
+}
+
+/// What decides the first frame's pixels, but for the renderer's own revision.
+std::string lines_of_job(const std::string& body) {
+  MemoryAssets assets;
+  Diagnostics diagnostics;
+  const Job job = parse_job("hyades: 1\n" + body, "job.yaml", assets, diagnostics);
+  EXPECT_EQ(diagnostics.to_string(), "");
+  const std::string text = resolved_job_text(job, 1);
+  return text.substr(text.find('\n') + 1);
+}
+
+// Films are kept by these lines for longer than one version of the program. A key that is new must
+// not change those of a job that does not have it; within a map that may be absent (bump, emit,
+// ...) it wants a row in the table of old lines (core/job/*_text.cpp).
+TEST(RenderKey, StaysWhereAJobHasNoneOfTheNewKeys) {
+  const std::map<std::string, std::string> jobs = {
+      {"camera: {focus: 3, aperture: {f_stop: 2}}\n"
+       "lights: {a: {type: spot}, b: {type: sun}}\n",
+       "a91ccfef7798774e996486ab798056b535dfc9756076e265d6eb8a2581976bd1"},
+      {"materials: {a: {type: dielectric}, b: {type: dielectric, roughness: 0.3}}\n",
+       "ea080a18555997f2ce5c927c390389695a67aca6c4956bdb6e60d66863b1d07d"},
+      {"materials: {a: {type: principled, subsurface: {radius: 0.1}}}\n",
+       "782ad5d33812e608651611971b374e2be215f9789f951419d1babeaccc4b12b2"},
+      {"materials: {a: {type: principled}}\n",
+       "42baf9b70a1dae38be539bd248a0226a84eaa999281fc26de35a939456df6157"},
+      {"objects: {a: {shape: sphere, emit: {color: 2}, at: [1, 0, 0], transform: [{rotate_y: "
+       "9}]}}\n",
+       "6dcddb13547c1c327e5707e33ce1b2a27ba95ae12c1bcf9d7411ea0939de90a1"},
+      {"textures: {n: {type: perlin3d}}\n"
+       "materials: {a: {type: conductor, normal_map: {texture: n}}}\n",
+       "d684b060c666f89b01aa9ef2654d7a5a51af5330aa05f64224b16334838824ed"},
+      {"textures: {n: {type: perlin3d}}\n"
+       "materials: {a: {type: lambert, bump: {texture: n}}}\n",
+       "6853bac7e265ba4c3152d400134070e145cc431a95c8cb1b1c9efa240551f7ff"},
+  };
+  for (const auto& [body, known] : jobs) {
+    const std::string lines = lines_of_job(body);
+    EXPECT_EQ(to_hex(sha256(lines)), known) << body << "is now\n" << lines;
+  }
 }
 
 }  // namespace
