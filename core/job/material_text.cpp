@@ -31,7 +31,6 @@ constexpr OldLine kOldMaterialLines[] = {
     {"sides", nullptr, "4:both"},
     {"bump.texture"},
     {"bump.height"},
-    {"bump.strength", nullptr, "3f800000"},
     {"colored"},
     {"edge"},
     {"transmitted"},
@@ -59,6 +58,7 @@ constexpr OldLine kOldMaterialLines[] = {
     {"subsurface.radius"},
     {"subsurface.scale"},
     {"subsurface.g"},
+    {"bump.strength", nullptr, "3f800000"},
 };
 
 bool has_old_line(std::string_view key) {
@@ -70,7 +70,8 @@ bool has_old_line(std::string_view key) {
 std::vector<FieldWriter::Line> old_lines_of(FieldWriter& out, const MaterialDesc& material) {
   auto lines = lines_of(out, material);
   if (std::holds_alternative<PrincipledDesc>(material.kind)) {
-    // Its roughness and ior were those of all types; what it does with facets was not to be chosen.
+    // Its roughness and ior were those of all types. multiple_scattering was no key of it, and has
+    // the line of others that say nothing, whatever its default.
     std::erase(lines, FieldWriter::Line{"multiple_scattering", "1"});
     for (FieldWriter::Line& line : lines) {
       const std::string inner = "principled." + line.key;

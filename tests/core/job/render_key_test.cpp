@@ -115,6 +115,8 @@ TEST(RenderKey, TextIsOneFieldPerLine) {
 /// What decides the first frame's pixels, but for the renderer's own revision.
 std::string lines_of_job(const std::string& body) {
   MemoryAssets assets;
+  for (const char* file : {"n.png", "a.png", "a.hair", "a.vdb", "a.obj", "p.ply"})
+    assets.add(file, std::string("content of ") + file);
   Diagnostics diagnostics;
   const Job job = parse_job("hyades: 1\n" + body, "job.yaml", assets, diagnostics);
   EXPECT_EQ(diagnostics.to_string(), "");
@@ -145,6 +147,23 @@ TEST(RenderKey, StaysWhereAJobHasNoneOfTheNewKeys) {
       {"textures: {n: {type: perlin3d}}\n"
        "materials: {a: {type: lambert, bump: {texture: n}}}\n",
        "6853bac7e265ba4c3152d400134070e145cc431a95c8cb1b1c9efa240551f7ff"},
+      {"textures: {n: {type: image, file: n.png, mapping: {type: planar}}}\n",
+       "be7ef394426c09533916d102b91ebeac53f26007ef1e03f787b62f972a01bb26"},
+      {"materials: {a: {type: hair}}\nobjects: {a: {curves: a.hair, material: a}}\n",
+       "23549a7c3577ff3cb7824a626bd52dbeea5f294a59f5be3da2c7789f1dbc31ec"},
+      {"media: {m: {scattering: 1, density: {noise: {scale: 2}}}}\n",
+       "0e7f9d384a68943ea90030b39d4562516f9ec3bde1a8156ee33684000f2dd454"},
+      {"media: {m: {scattering: 1, density: {shell: {image: a.png}}}}\n",
+       "94772cc245a56b09d0abd88adf781dec484066ccb1792eace92d9ef94df8f8c8"},
+      {"media: {m: {scattering: 1, density: {vdb: a.vdb}, emission: {strength: 2}}}\n",
+       "5ef1189a95f4c8e7fa31f8617c4f82bb845b0eca05f0533ec7f731f6441a1d96"},
+      {"textures: {n: {type: perlin3d}}\n"
+       "objects: {a: {mesh: a.obj, displacement: {texture: n}}, b: {instance: g, places: p.ply}}\n"
+       "groups: {g: {objects: {c: {shape: box}}}}\n",
+       "675e1e7cd8668b547977509a89115c461e93487305f34f335afe91303ce7cec9"},
+      {"environment: {sky: {elevation: 20}}\nfilm: {filter: {type: gaussian}}\n"
+       "integrator: mlt\n",
+       "04d30b0620b09287c40d31d01166fb124af33a18dfc3d55501fac9b9b6b48ab6"},
   };
   for (const auto& [body, known] : jobs) {
     const std::string lines = lines_of_job(body);
