@@ -18,7 +18,7 @@ using core::Vec3d;
 /// An error of 1 % is found with probability 99 %, and at most one of a hundred runs of all the
 /// tests of this file fails by chance.
 constexpr Promise kMediaPromise{
-    .significance = 0.01, .tests = 60, .relative_error = 0.01, .power = 0.99};
+    .significance = 0.01, .tests = 87, .relative_error = 0.01, .power = 0.99};
 
 /// A camera with next to no field of view that looks from (0, 0, 4) along -z, so that every pixel
 /// sees the same.
@@ -263,7 +263,7 @@ atmosphere: fog
   const PictureMean ball =
       lit("objects: {lamp: {shape: sphere, radius: 0.1, at: [0, 3, 0], material: lamp, emit: "
           "{power: 100}}}");
-  const double alpha = sidak(0.01, 60);
+  const double alpha = sidak(kMediaPromise.significance, kMediaPromise.tests);
   for (int c = 0; c < 3; ++c) {
     const double variance = point.sigma[c] * point.sigma[c] + ball.sigma[c] * ball.sigma[c];
     EXPECT_LE(detectable_effect(variance, alpha, 0.99), 0.06 * point.mean[c]);
