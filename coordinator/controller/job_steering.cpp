@@ -136,7 +136,7 @@ grpc::Status JobSteering::cancel_waiting(uint64_t id, v1::Job& now) {
 
 grpc::Status being_recovered(uint64_t id) {
   return farm::retry_later(grpc::StatusCode::UNAVAILABLE,
-                           fmt::format("job {} is just being recovered", id),
+                           fmt::format("job {} is just being opened again", id),
                            std::chrono::seconds(1));
 }
 

@@ -90,10 +90,12 @@ TEST(Operations, OnlyThoseWhoMayWaitLookWhoseJobItIs) {
 }
 
 TEST(Operations, StreamsSayWhereTheyWaitForTheDisk) {
+  // What is held in memory, and streams that are written on other threads as things happen.
+  const std::set<std::string> at_once = {"Work/Attend", "page", "health", "farm.events", "session"};
   for (const Operation& row : all_operations()) {
-    const std::string method = row.method;
-    if (row.handle || method.empty() || method == "Work/Attend") continue;
-    EXPECT_NE(row.runs, Runs::at_once) << method;
+    if (row.handle || row.runs != Runs::at_once) continue;
+    EXPECT_TRUE(at_once.contains(row.method) || at_once.contains(row.rule.action))
+        << row.rule.action << " " << row.method;
   }
 }
 
