@@ -4,7 +4,7 @@
 
 Prints a line for each scene: means of Cycles and of Hyades, the difference of the means (at most 2 %, unless the scene
 says otherwise) and the largest of a block of 8 x 8 pixels (at most 5 %). HYADES_TRUTH names a folder that keeps the pictures;
-HYADES_TEST_TURN=0..3 takes a quarter of the scenes.
+HYADES_TEST_QUARTER=0..3 takes a quarter of the scenes.
 """
 
 import importlib
@@ -61,10 +61,12 @@ def main(subject: str, names: list[str]) -> int:
     importlib.import_module(f"scenes.{subject}")
     bpy.utils.register_class(Exporting)
     kept = os.environ.get("HYADES_TRUTH")
-    turn = os.environ.get("HYADES_TEST_TURN")
+    quarter = os.environ.get("HYADES_TEST_QUARTER")
+    scenes = SCENES[["0", "1", "2", "3"].index(quarter) :: 4] if quarter else SCENES
+    print(f"{len(scenes)} of {len(SCENES)} scenes")
     wrong: list[str] = []
     with tempfile.TemporaryDirectory() as scratch:
-        for scene in SCENES if turn is None else SCENES[int(turn) :: 4]:
+        for scene in scenes:
             if not names or scene.name in names:
                 wrong += judge(scene, pathlib.Path(kept or scratch) / scene.name)
     print(*wrong, sep="\n")

@@ -11,7 +11,7 @@
 #include "core/image/write_image.h"
 #include "tests/support/random.h"
 #include "tests/support/temp_folder.h"
-#include "tests/support/test_turn.h"
+#include "tests/support/test_quarter.h"
 #include "tests/truth/parity_scenes.h"
 #include "tests/truth/replicates.h"
 
@@ -100,7 +100,7 @@ class Parity : public testing::TestWithParam<ParityScene> {};
 // begin with: a larger one of the mean is noticed.
 TEST_P(Parity, PathBdptAndMltAgree) {
   const ParityScene& scene = GetParam();
-  if (!in_turn(scene.name)) GTEST_SKIP() << "another commit's turn (docs/testing.md)";
+  if (!in_quarter(all_scenes(), scene.name)) GTEST_SKIP() << kOtherQuarter;
   Promise promise{.significance = 0.01,
                   .tests = 3 * 2 * static_cast<int>(all_scenes().size()),
                   .relative_error = scene.relative_error,

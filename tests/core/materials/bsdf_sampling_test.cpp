@@ -5,7 +5,7 @@
 #include "tests/core/materials/bsdf_cases.h"
 #include "tests/support/chi_squared.h"
 #include "tests/support/random.h"
-#include "tests/support/test_turn.h"
+#include "tests/support/test_quarter.h"
 
 // T1 and T2: samples follow pdf() and carry f cos / pdf.
 
@@ -17,7 +17,7 @@ class BsdfCases : public ::testing::TestWithParam<BsdfCase> {};
 // Detects a density that is 1 % too high on half of the samples' domain and as much too low on the
 // other with probability 0.99, at a joint significance of 0.01 over all cases and directions.
 TEST_P(BsdfCases, DirectionsFollowThePdf) {
-  if (!test::in_turn(GetParam().name)) GTEST_SKIP() << "another commit's turn (docs/testing.md)";
+  if (!test::in_quarter(smooth_cases(), GetParam().name)) GTEST_SKIP() << test::kOtherQuarter;
   const auto directions = five_directions();
   const BsdfUnderTest bsdf(GetParam().material);
   test::SphereTest settings;
