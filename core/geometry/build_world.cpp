@@ -22,10 +22,8 @@ namespace hyades::core {
 namespace {
 
 unsigned mask_of(const Placement& p) {
-  auto mask = static_cast<unsigned>(RayKind::other);
-  if (p.visible_to_camera) mask |= static_cast<unsigned>(RayKind::camera);
-  if (p.blocks_light) mask |= static_cast<unsigned>(RayKind::shadow);
-  return mask;
+  const bool occludes = p.blocks_light && meet(p.seen_by, RayKind::shadow);
+  return static_cast<unsigned>(occludes ? p.seen_by | RayKind::occlusion : p.seen_by);
 }
 
 size_t triangle_count(const Placement& p) {
@@ -286,8 +284,8 @@ class WorldBuilder {
 bool same_placement(const Placement& a, const Placement& b) {
   return a.shape.kind == b.shape.kind && mesh_key(a.shape) == mesh_key(b.shape) &&
          a.shape.radius == b.shape.radius && a.shape.height == b.shape.height &&
-         a.to_world == b.to_world && a.visible_to_camera == b.visible_to_camera &&
-         a.blocks_light == b.blocks_light && (a.instancer == nullptr) == (b.instancer == nullptr) &&
+         a.to_world == b.to_world && a.seen_by == b.seen_by && a.blocks_light == b.blocks_light &&
+         (a.instancer == nullptr) == (b.instancer == nullptr) &&
          (a.instancer == nullptr || (a.instancer->places == b.instancer->places &&
                                      a.instancer->to_world == b.instancer->to_world));
 }

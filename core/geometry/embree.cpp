@@ -153,7 +153,7 @@ std::optional<SceneHit> meet_nearest(RTCScene scene, const RTCRay& ray) {
 }
 
 bool EmbreeScene::occluded(const Ray& ray) const {
-  RTCRay query = to_embree(ray, RayKind::shadow, kNearest);
+  RTCRay query = to_embree(ray, RayKind::occlusion, kNearest);
   trace_any(scene_, query);
   return query.tfar < 0.0F;
 }

@@ -353,7 +353,7 @@ std::optional<SceneHit> TreeScene::nearest(const Ray& ray, RayKind kind, float t
 }
 
 bool TreeScene::occluded(const Ray& ray) const {
-  return TreeWalk(ray, RayKind::shadow, kNearest).any(*this);
+  return TreeWalk(ray, RayKind::occlusion, kNearest).any(*this);
 }
 
 size_t TreeScene::memory() const {

@@ -15,8 +15,28 @@
 
 namespace hyades::core {
 
-/// Which rays a placement is seen by.
-enum class RayKind : uint32_t { camera = 1, other = 2, shadow = 4 };
+/// What a ray is, by where it comes from: a bit each, so that several make a set.
+enum class RayKind : uint32_t {
+  none = 0,
+  camera = 1,        ///< straight from the lens
+  diffuse = 2,       ///< reflected by the diffuse part of a surface
+  glossy = 4,        ///< reflected by the rest of it, sharply too
+  transmission = 8,  ///< sent through a surface
+  volume = 16,       ///< scattered in a medium
+  shadow = 32,       ///< between a place and a light
+  scattered = 2 | 4 | 8 | 16,
+  all = 63,
+  occlusion = 64,  ///< World::occluded's own: what stands in the way of shadow rays for certain
+};
+
+constexpr RayKind operator|(RayKind a, RayKind b) {
+  return static_cast<RayKind>(static_cast<uint32_t>(a) | static_cast<uint32_t>(b));
+}
+constexpr RayKind operator&(RayKind a, RayKind b) {
+  return static_cast<RayKind>(static_cast<uint32_t>(a) & static_cast<uint32_t>(b));
+}
+/// Whether the sets have a kind in common.
+constexpr bool meet(RayKind a, RayKind b) { return (a & b) != RayKind::none; }
 
 /// A shape put into the world.
 struct Placement {
@@ -24,8 +44,8 @@ struct Placement {
   /// One matrix: still. More: object to world at equal steps over the shutter interval,
   /// interpolated linearly, element by element, between neighbours.
   std::vector<Mat4> to_world{Mat4(1.0F)};
-  bool visible_to_camera = true;
-  bool blocks_light = true;  ///< false: occluded() looks through it (null materials, opacity)
+  RayKind seen_by = RayKind::all;  ///< the rays that meet it
+  bool blocks_light = true;        ///< false: occluded() looks through it (null materials, opacity)
   /// Whether neighbouring frames place it elsewhere or shape it otherwise: such placements are kept
   /// apart from the geometry that frames share. Decided by the job alone, never by which frames
   /// were built before, so that a frame's bits do not depend on them.
@@ -70,10 +90,10 @@ class World {
  public:
   virtual ~World() = default;
 
-  /// The nearest surface on the ray, or nothing.
+  /// The nearest surface on the ray that is seen by (one of) `kind`, or nothing.
   virtual std::optional<Hit> intersect(const Ray& ray, RayKind kind) const = 0;
 
-  /// Whether anything that blocks light lies on the ray.
+  /// Whether anything that blocks light lies on the ray, and shadow rays see it.
   virtual bool occluded(const Ray& ray) const = 0;
 
   /// Everything about the point that `ray` hit.

@@ -142,7 +142,7 @@ class BidirectionalSample final : public SubpathWatcher {
           segment.throughput * radiance);
   }
 
-  void arrives(const PathVertex& v) override {
+  bool arrives(const PathVertex& v) override {
     if (camera_.size() == 2) {
       out_.alpha = 1.0F;
       if (v.kind == PathVertex::Kind::surface) {
@@ -153,10 +153,11 @@ class BidirectionalSample final : public SubpathWatcher {
         out_.normal = v.point.ns;
       }
     }
-    if (albedo_noted_ || !v.joins()) return;
+    if (albedo_noted_ || !v.joins()) return true;
     out_.albedo = v.throughput;
     if (v.kind == PathVertex::Kind::surface) out_.albedo *= v.surface->albedo(v.wo);
     albedo_noted_ = true;
+    return true;
   }
 
   void goes_on(const PathVertex& from, const PathSegment& segment) override {
@@ -200,6 +201,7 @@ class BidirectionalSample final : public SubpathWatcher {
     const Vec3& direction = segment.ray.direction;
     if (camera_.size() > 1) {
       const PathVertex& before = camera_.back();
+      if (!scene_.links(on.light, before.lists(scene_))) return;
       const double met = density_at(segment, on, before.position);
       const LightDensities densities = light_densities(scene_, on, before, direction);
       const double back = densities.towards / before.density;
@@ -222,8 +224,9 @@ class BidirectionalSample final : public SubpathWatcher {
     sampler_.set_dimension(kCameraDimensions + static_cast<uint32_t>(t - 2) * kPerEvent +
                            kLightChoice);
     const Vec4 u = sampler_.next_4d();
-    const auto selected = scene_.selector->select(v.position, v.selection_normal(), u.z);
-    if (!selected) return;
+    const ListBits lists = v.lists(scene_);
+    const auto selected = scene_.selector->select(v.position, v.selection_normal(), u.z, lists);
+    if (!selected || !scene_.links(selected->index, lists)) return;
     const Light& light = *scene_.lights[selected->index];
     const auto sample = light.sample_direct(v.position, ray_.time, u.w, Vec2(u));
     if (!sample || is_black(sample->radiance)) return;
@@ -323,10 +326,7 @@ class BidirectionalSample final : public SubpathWatcher {
   void join_lens(int s, const Vec2& lens) {
     const PathVertex& y = light_[s - 1];
     if (!y.joins() || !wanted(s, 1)) return;
-    if (y.kind == PathVertex::Kind::surface &&
-        !scene_.world->placement(y.point.object).visible_to_camera) {
-      return;
-    }
+    if (is_hidden_from_camera(y)) return;
     const auto seen = scene_.camera->connect(y.position, lens, ray_.time);
     if (!seen) return;
     find_places(seen->film);
@@ -361,6 +361,15 @@ class BidirectionalSample final : public SubpathWatcher {
       splat.film = place;
       work_.splats.push_back(splat);
     }
+  }
+
+  /// Whether the camera does not see what scatters at `y`, or sees a hole there.
+  bool is_hidden_from_camera(const PathVertex& y) const {
+    if (y.kind == PathVertex::Kind::surface) {
+      return y.object->holdout ||
+             !meet(scene_.world->placement(y.point.object).seen_by, RayKind::camera);
+    }
+    return y.around.body() != nullptr && scene_.objects[y.around.body()->object].holdout;
   }
 
   /// The places that see what `film` sees and that pixels that are rendered may see, whatever the

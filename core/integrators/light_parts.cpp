@@ -29,6 +29,18 @@ FirstEvent FirstEvent::at(const ShadedSurface& surface, const Vec3& wo, const Ve
   return {Kind::reflection, specular ? Rgb(0.0F) : surface.diffuse_share(wo, wi)};
 }
 
+Rgb FirstEvent::keep(RayKind kinds) {
+  if (kind == Kind::volume) return Rgb(meet(kinds, RayKind::volume) ? 1.0F : 0.0F);
+  if (kind == Kind::transmission) return Rgb(meet(kinds, RayKind::transmission) ? 1.0F : 0.0F);
+  const bool glossy = meet(kinds, RayKind::glossy);
+  if (glossy && meet(kinds, RayKind::diffuse)) return Rgb(1.0F);
+  const Rgb kept = glossy                          ? Rgb(1.0F) - diffuse
+                   : meet(kinds, RayKind::diffuse) ? diffuse
+                                                   : Rgb(0.0F);
+  diffuse = Rgb(glossy ? 0.0F : 1.0F);
+  return kept;
+}
+
 void LightParts::clear() {
   std::fill(sums_.begin(), sums_.end(), Rgb(0.0F));
   splat_parts_.clear();

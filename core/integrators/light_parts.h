@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/film/layout.h"
+#include "core/geometry/world.h"
 #include "core/materials/shaded_surface.h"
 #include "core/media/medium.h"
 
@@ -21,6 +22,9 @@ struct FirstEvent {
   /// At a surface that light comes to along unit `wi` and leaves along `wo`, to the camera; both
   /// away from it. `specular`: by a delta lobe.
   static FirstEvent at(const ShadedSurface& surface, const Vec3& wo, const Vec3& wi, bool specular);
+
+  /// Which share of the light comes by rays of `kinds`; from now on it is only that.
+  Rgb keep(RayKind kinds);
 };
 
 /// Which light a contribution comes from.

@@ -53,6 +53,7 @@ std::optional<PathSegment> begin_far_away(const Scene& scene, const Light& light
     segment.throughput *= air->transmittance(all_the_way, kInfinity, Vec4(0.5F));
     if (is_black(segment.throughput)) return std::nullopt;
   }
+  segment.kind = RayKind::diffuse;
   segment.around = MediumStack(scene.atmosphere.get());
   return segment;
 }
@@ -69,6 +70,7 @@ std::optional<PathSegment> begin_at_place(const Scene& scene, const Light& light
   segment.ray = spawn_ray(sample->on, sample->direction);
   segment.throughput = sample->weight / probability;
   segment.pdf = static_cast<double>(sample->pdf_direction);
+  segment.kind = RayKind::diffuse;
   segment.around = media_around(scene, segment.ray.origin, time);
   return segment;
 }
@@ -110,8 +112,8 @@ LightDensities light_densities(const Scene& scene, const PathVertex& on, const P
   const Light& light = *scene.lights[on.light];
   const LightSelector& selector = *scene.selector;
   LightDensities densities;
-  const double selected = static_cast<double>(
-      selector.probability(before.position, before.selection_normal(), on.light));
+  const double selected = static_cast<double>(selector.probability(
+      before.position, before.selection_normal(), on.light, before.lists(scene)));
   densities.chosen =
       light.is_delta()
           ? selected
@@ -123,11 +125,13 @@ LightDensities light_densities(const Scene& scene, const PathVertex& on, const P
   return densities;
 }
 
-void FirstLightVertex::arrives(const PathVertex& vertex) {
-  if (path_.size() != 2) return;
+bool FirstLightVertex::arrives(const PathVertex& vertex) {
+  if (path_.size() != 2) return true;
+  if (!scene_.links(path_[0].light, vertex.lists(scene_))) return false;
   const double chosen = light_densities(scene_, path_[0], vertex, vertex.wo).chosen;
   const double share = chosen / path_[0].density;
   path_[1].edge = share * share;
+  return true;
 }
 
 }  // namespace hyades::core

@@ -39,11 +39,11 @@ double emission_density(const Scene& scene, const Light& light, const PathVertex
                         const PathVertex& v, const Vec3& direction);
 
 /// Corrects the sums of the first vertex after the light: choosing the light from there has another
-/// density than beginning at it.
+/// density than beginning at it. Where the light is not linked to what is there the path ends.
 class FirstLightVertex final : public SubpathWatcher {
  public:
   FirstLightVertex(const Scene& scene, Subpath& path) : scene_(scene), path_(path) {}
-  void arrives(const PathVertex& vertex) override;
+  bool arrives(const PathVertex& vertex) override;
 
  private:
   const Scene& scene_;

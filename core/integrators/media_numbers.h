@@ -38,6 +38,12 @@ class MediaNumbers {
     return sampler_->next_1d();
   }
 
+  /// For which kind of ray goes on from the event at the way's end.
+  float kind_number() {
+    sampler_->set_dimension(dimension_ + kPerWay - 4);
+    return sampler_->next_1d();
+  }
+
   /// For the next part of the way.
   Vec4 next() {
     sampler_->set_dimension(dimension_);
@@ -60,6 +66,6 @@ class MediaNumbers {
   Sampler* sampler_;
   uint32_t dimension_;
 };
-static_assert(8 * (kMaxNullCrossings + 1) <= 1 << 13);
+static_assert(8 * (kMaxNullCrossings + 1) < 1 << 13);
 
 }  // namespace hyades::core

@@ -87,10 +87,18 @@ class Path final : public WalkWatcher {
       if (depth() == 0) note_first_surface(point);
       if (work_.log != nullptr) log_hit(point, object);
     }
-    add_emission(point, object);
+    if (!lights_found_) add_emission(point, object);
   }
 
-  void leaves(const PathSegment& /*segment*/) override { add_sky(); }
+  void meets_holdout(const SceneObject& object) override {
+    if (work_.log == nullptr) return;
+    work_.log->lines.push_back(fmt::format("  meets the holdout '{}'", object.name));
+  }
+
+  void leaves(const PathSegment& /*segment*/) override {
+    if (work_.log != nullptr) work_.log->lines.emplace_back("  leaves the scene");
+    if (!lights_found_) add_sky();
+  }
 
   void loses_roulette() override {
     if (work_.log != nullptr) work_.log->lines.emplace_back("  ended by roulette");
@@ -115,40 +123,55 @@ class Path final : public WalkWatcher {
   float bsdf_weight(uint32_t index, float light_pdf) const {
     const PathSegment& segment = walk_.segment();
     if (segment.specular || !(light_pdf > 0.0F)) return 1.0F;
+    const Previous& from = previous_;
     const float chosen =
-        scene_.selector->probability(previous_.position, previous_.normal, index) * light_pdf;
-    const float near =
-        near_density(previous_.flight, index, previous_.t, previous_.t_pdf) * light_pdf;
+        scene_.selector->probability(from.position, from.normal, index, from.lists) * light_pdf;
+    const float near = near_density(from.flight, index, from.t, from.t_pdf, from.lists) * light_pdf;
     return power_heuristic(static_cast<float>(segment.pdf),
                            std::sqrt(chosen * chosen + near * near));
   }
 
   /// The density with which add_light_from_near chooses light `index` and the place at `t` of
   /// `flight`, over that of free flight there, `t_pdf`.
-  float near_density(const MediumSegment& flight, uint32_t index, float t, float t_pdf) const {
+  float near_density(const MediumSegment& flight, uint32_t index, float t, float t_pdf,
+                     ListBits lists) const {
     const float rival = flight.rival(*scene_.lights[index], t, t_pdf);
     if (!(rival > 0.0F)) return 0.0F;
-    return rival * scene_.selector->probability_along(flight.ray, flight.t_max, index);
+    return rival * scene_.selector->probability_along(flight.ray, flight.t_max, index, lists);
   }
 
-  void add_sky() {
-    if (work_.log != nullptr) work_.log->lines.emplace_back("  leaves the scene");
+  /// Whether what the path meets of light `index` is light: from where it scattered last, by the
+  /// kind of its ray.
+  bool is_lit_by(uint32_t index) const {
+    return depth() == 0 || (scene_.links(index, previous_.lists) &&
+                            meet(scene_.light_links[index].seen_by, walk_.segment().kind));
+  }
+
+  /// Whether light `index` is looked for: one whose blockers are `list`, or any.
+  bool is_looked_for(uint32_t index, std::optional<uint8_t> list) const {
+    return is_lit_by(index) && (!list || scene_.light_links[index].blockers == *list);
+  }
+
+  /// Adds what infinite lights send, of which `share` comes through: all, or those of `list`.
+  void add_sky(const Rgb& share = Rgb(1.0F), std::optional<uint8_t> list = {}) {
     if (depth() == 0 && !scene_.environment_visible) return;
     const PathSegment& segment = walk_.segment();
     const Vec3& direction = segment.ray.direction;
     const SurfacePoint nowhere;
     for (const uint32_t index : scene_.infinite_lights) {
+      if (!is_looked_for(index, list)) continue;
       const Light& light = *scene_.lights[index];
       const Rgb radiance = light.radiance(nowhere, -direction);
       if (is_black(radiance)) continue;
       const float pdf =
           segment.specular ? 0.0F : light.pdf_direct(previous_.position, direction, nowhere);
-      add(radiance * bsdf_weight(index, pdf), depth(), {index, true});
+      add(share * radiance * bsdf_weight(index, pdf), depth(), {index, true});
     }
   }
 
-  void add_emission(const SurfacePoint& point, const SceneObject& object) {
-    if (object.light == SceneObject::kNoLight) return;
+  void add_emission(const SurfacePoint& point, const SceneObject& object,
+                    const Rgb& share = Rgb(1.0F), std::optional<uint8_t> list = {}) {
+    if (object.light == SceneObject::kNoLight || !is_looked_for(object.light, list)) return;
     const Light& light = *scene_.lights[object.light];
     const PathSegment& segment = walk_.segment();
     const Vec3& direction = segment.ray.direction;
@@ -156,20 +179,68 @@ class Path final : public WalkWatcher {
     if (is_black(radiance)) return;
     const float pdf =
         segment.specular ? 0.0F : light.pdf_direct(previous_.position, direction, point);
-    add(radiance * bsdf_weight(object.light, pdf), depth(), {object.light});
+    add(share * radiance * bsdf_weight(object.light, pdf), depth(), {object.light});
+  }
+
+  /// Where shadow rays see other things than those that go on: adds the lights that the way from
+  /// the last scattering meets, of which as much comes here as does to who chooses them. Then what
+  /// the walk meets is no light again. Delta lobes only see what they see.
+  void find_lights() {
+    lights_found_ = scene_.shadows_differ && !walk_.segment().specular;
+    if (!lights_found_) return;
+    if (work_.log != nullptr) work_.log->lines.emplace_back("  looks for lights as shadow rays do");
+    MediaNumbers numbers(sampler_, depth(), MediaNumbers::Purpose::connection);
+    for (uint8_t list = 0; scene_.blocker_lists >> list != 0; ++list) {
+      if ((scene_.blocker_lists >> list & 1U) != 0) find_lights_of(list, numbers);
+      if (list == 63) break;
+    }
+  }
+
+  /// Those whose blockers are `list`.
+  void find_lights_of(uint8_t list, MediaNumbers& numbers) {
+    const PathSegment& segment = walk_.segment();
+    MediumStack inside = segment.around;
+    keep_seen(scene_, RayKind::shadow, inside);
+    keep_blockers(scene_, list, inside);
+    Ray way = segment.ray;
+    Rgb share(1.0F);
+    SurfacePoint point;
+    for (int crossings = 0; crossings < kMaxNullCrossings; ++crossings) {
+      ++work_.rays;
+      point = {};
+      const bool met = scene_.world->nearest(way, segment.kind | RayKind::shadow, point);
+      if (const Medium* medium = inside.medium(); medium != nullptr) {
+        share *= medium->transmittance(way, met ? point.t : kInfinity, numbers.next());
+      }
+      if (is_black(share)) return;
+      if (!met) return add_sky(share, list);
+      const SceneObject& object = scene_.objects[point.object];
+      const RayKind seen_by = scene_.world->placement(point.object).seen_by;
+      if (meet(seen_by, segment.kind)) add_emission(point, object, share, list);
+      if (meet(seen_by, RayKind::shadow) && is_blocker(object, list)) {
+        if (!goes_straight(object, point, inside, numbers)) return;
+        cross(object, point, way.direction, inside);
+      }
+      way = spawn_ray(point, way.direction);
+    }
   }
 
   void add_direct_light(const ShadedSurface& surface, const SceneObject& object, const Vec3& wo) {
     const SurfacePoint& point = surface.point();
-    const auto chosen = choose_light(point.position, point.ng);
+    const auto chosen = choose_light(point.position, point.ng, object.in_lists);
     if (!chosen) return;
     const LightSample& sample = chosen->sample;
-    const Rgb f = surface.evaluate(wo, sample.direction, TransportMode::radiance);
+    Rgb f = surface.evaluate(wo, sample.direction, TransportMode::radiance);
     if (is_black(f)) return;
+    if (is_first_told() || scene_.tells_rays_apart) {
+      FirstEvent event = FirstEvent::at(surface, wo, sample.direction, false);
+      if (scene_.tells_rays_apart) f *= event.keep(scene_.light_links[chosen->index].seen_by);
+      if (is_first_told()) first_ = event;
+      if (is_black(f)) return;
+    }
     const Ray shadow = shadow_ray(point, sample);
     const float pdf = surface.pdf(wo, sample.direction, TransportMode::radiance);
     const float weight = sample.delta ? 1.0F : power_heuristic(chosen->pdf(), pdf);
-    if (is_first_told()) first_ = FirstEvent::at(surface, wo, sample.direction, false);
     const MediumStack& around = walk_.segment().around;
     if (!passes_through(point, wo, sample.direction)) {
       return add_light(*chosen, f, weight, shadow, around, MediaNumbers::Purpose::shadow);
@@ -182,15 +253,16 @@ class Path final : public WalkWatcher {
   /// Adds light that is scattered at `place` in a medium, where free flight has ended. `pdf`: its
   /// density there; 0: unknown.
   void add_direct_light(const ScatteringPlace& place, float pdf) {
-    const auto chosen = choose_light(place.position, Vec3(0.0F));
-    if (!chosen) return;
-    const LightSample& sample = chosen->sample;
     const PathSegment& segment = walk_.segment();
+    const ListBits lists = scene_.lists_within(segment.around);
+    const auto chosen = choose_light(place.position, Vec3(0.0F), lists);
+    if (!chosen || !is_lit_in_media(chosen->index)) return;
+    const LightSample& sample = chosen->sample;
     const Phase& phase = place.flight.medium->phase();
     const float cosine = glm::dot(segment.ray.direction, sample.direction);
     const float scattered =
         sample.delta ? 0.0F : phase.pdf(cosine, channel_shares(segment.throughput));
-    const float near = near_density(place.flight, chosen->index, place.t, pdf) * sample.pdf;
+    const float near = near_density(place.flight, chosen->index, place.t, pdf, lists) * sample.pdf;
     const float weight =
         power_heuristic(chosen->pdf(), std::sqrt(scattered * scattered + near * near));
     add_light(*chosen, phase.evaluate(cosine), weight,
@@ -205,9 +277,11 @@ class Path final : public WalkWatcher {
     if (depth() >= std::min(settings_.max_depth, settings_.max_events)) return;
     if (scene_.selector->empty()) return;
     sampler_.set_dimension(light_dimension());
+    const ListBits lists = scene_.lists_within(walk_.segment().around);
     const auto selected =
-        scene_.selector->select_along(flight.ray, flight.t_max, sampler_.next_4d().z);
-    if (!selected) return;
+        scene_.selector->select_along(flight.ray, flight.t_max, sampler_.next_4d().z, lists);
+    if (!selected || !scene_.links(selected->index, lists)) return;
+    if (!is_lit_in_media(selected->index)) return;
     const Light& light = *scene_.lights[selected->index];
     const std::optional<Equiangular> places = flight.places_near(light);
     if (!places) return;
@@ -223,8 +297,8 @@ class Path final : public WalkWatcher {
     // The shares after scattering there, which the direction would be chosen with.
     const Rgb shares = channel_shares(segment.throughput * density.scattered);
     const float scattered = sample->delta ? 0.0F : phase.pdf(cosine, shares) / chosen.pdf();
-    const float there =
-        scene_.selector->probability(position, Vec3(0.0F), selected->index) / selected->probability;
+    const float there = scene_.selector->probability(position, Vec3(0.0F), selected->index, lists) /
+                        selected->probability;
     const float pdf = places->pdf(t);
     const float other = density.pdf / pdf;
     const float weight = 1.0F / (1.0F + other * other * (there * there + scattered * scattered));
@@ -242,13 +316,18 @@ class Path final : public WalkWatcher {
     float pdf() const { return probability * sample.pdf; }
   };
 
-  /// For the place `from` with normal `normal` (zero: none, in a medium).
-  std::optional<ChosenLight> choose_light(const Vec3& from, const Vec3& normal) {
+  /// Whether media are lit by light `index` at all.
+  bool is_lit_in_media(uint32_t index) const {
+    return meet(scene_.light_links[index].seen_by, RayKind::volume);
+  }
+
+  /// For the place `from` with normal `normal` (zero: none, in a medium), which is in `lists`.
+  std::optional<ChosenLight> choose_light(const Vec3& from, const Vec3& normal, ListBits lists) {
     if (scene_.selector->empty()) return std::nullopt;
     sampler_.set_dimension(light_dimension());
     const Vec4 u = sampler_.next_4d();
-    const auto selected = scene_.selector->select(from, normal, u.z);
-    if (!selected) return std::nullopt;
+    const auto selected = scene_.selector->select(from, normal, u.z, lists);
+    if (!selected || !scene_.links(selected->index, lists)) return std::nullopt;
     const auto sample =
         scene_.lights[selected->index]->sample_direct(from, ray().time, u.w, Vec2(u));
     if (!sample || is_black(sample->radiance)) return std::nullopt;
@@ -259,7 +338,8 @@ class Path final : public WalkWatcher {
   void add_light(const ChosenLight& chosen, const Rgb& f, float weight, const Ray& shadow,
                  const MediumStack& around, MediaNumbers::Purpose purpose) {
     const Rgb share =
-        visible_share(scene_, shadow, around, MediaNumbers(sampler_, depth(), purpose), work_);
+        visible_share(scene_, shadow, around, MediaNumbers(sampler_, depth(), purpose), work_,
+                      scene_.light_links[chosen.index].blockers);
     if (is_black(share)) return;
     if (work_.log != nullptr) {
       work_.log->lines.push_back(fmt::format("    chooses light '{}', weight {:.4g}",
@@ -288,7 +368,9 @@ class Path final : public WalkWatcher {
     const float t_pdf = density ? density->pdf : 0.0F;
     add_direct_light(place, t_pdf);
     if (!walk_.scatter(medium, place.position)) return false;
-    previous_ = {place.position, Vec3(0.0F), place.flight, place.t, t_pdf};
+    previous_ = {place.position, Vec3(0.0F), scene_.lists_within(walk_.segment().around),
+                 place.flight,   place.t,    t_pdf};
+    find_lights();
     return true;
   }
 
@@ -310,14 +392,18 @@ class Path final : public WalkWatcher {
     const bool first_told = is_first_told();
     const auto sample = walk_.scatter(surface, object, wo);
     if (!sample) return false;
-    if (first_told) first_ = FirstEvent::at(surface, wo, sample->wi, sample->delta);
-    previous_ = {place.position, place.point.ng, {}};
+    if (first_told) {
+      first_ = FirstEvent::at(surface, wo, sample->wi, sample->delta);
+      if (scene_.tells_rays_apart) (void)first_.keep(walk_.segment().kind);
+    }
+    previous_ = {place.position, place.point.ng, object.in_lists, {}};
     if (work_.log != nullptr) {
       work_.log->lines.push_back(fmt::format("  {} {} along {}, weight {}",
                                              sample->delta ? "specular" : "scattered",
                                              sample->transmitted ? "transmission" : "reflection",
                                              in_words(sample->wi), in_words(sample->weight)));
     }
+    find_lights();
     return true;
   }
 
@@ -351,9 +437,10 @@ class Path final : public WalkWatcher {
   struct Previous {
     Vec3 position{0.0F};
     Vec3 normal{0.0F};
-    MediumSegment flight;  ///< in a medium: on which the path came there
-    float t = 0.0F;        ///< how far along it
-    float t_pdf = 0.0F;    ///< density with which free flight ended there; 0: unknown
+    ListBits lists = kAllLists;  ///< that what is there is in
+    MediumSegment flight;        ///< in a medium: on which the path came there
+    float t = 0.0F;              ///< how far along it
+    float t_pdf = 0.0F;          ///< density with which free flight ended there; 0: unknown
   };
 
   const IntegratorDesc& settings_;
@@ -363,7 +450,8 @@ class Path final : public WalkWatcher {
   RandomWalk walk_;
   PixelSample out_;
   Previous previous_;
-  FirstEvent first_;  ///< of the path's events, where light is told apart
+  bool lights_found_ = false;  ///< those on the way that the walk is on (find_lights)
+  FirstEvent first_;           ///< of the path's events, where light is told apart
   bool albedo_noted_ = false;
 };
 

@@ -54,6 +54,11 @@ struct PathVertex {
   /// The normal that choosing among lights refers to.
   Vec3 selection_normal() const { return kind == Kind::surface ? point.ng : Vec3(0.0F); }
 
+  /// The lists of objects that what is here is in, of a place that scatters in `scene`.
+  ListBits lists(const Scene& scene) const {
+    return kind == Kind::surface ? object->in_lists : scene.lists_within(around);
+  }
+
   /// f |cos| between `out` and `in`, unit, both away from the vertex; `mode` is what comes along
   /// `out`.
   Rgb evaluate(const Vec3& out, const Vec3& in, TransportMode mode) const;
@@ -87,6 +92,8 @@ class Subpath {
 
   /// A fresh vertex at the end; others stay where they are.
   PathVertex& add(PathVertex::Kind kind);
+
+  void drop_last() { --size_; }
 
   /// For the BSDFs of its vertices.
   BsdfArena& arena() { return arena_; }

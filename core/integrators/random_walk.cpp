@@ -41,8 +41,7 @@ RandomWalk::RandomWalk(const IntegratorDesc& settings, const Scene& scene, Sampl
 bool RandomWalk::next(ScatteringPlace& place) {
   MediaNumbers numbers(sampler_, events_, kind_.flights);
   MediaNumbers passing(sampler_, events_, kind_.passing);
-  const RayKind ray_kind =
-      events_ == 0 && kind_.mode == TransportMode::radiance ? RayKind::camera : RayKind::other;
+  const RayKind ray_kind = segment_.kind;
   Ray& ray = segment_.ray;
   SurfacePoint& point = place.point;
   for (int crossings = 0; crossings <= kMaxNullCrossings; ++crossings) {
@@ -50,8 +49,9 @@ bool RandomWalk::next(ScatteringPlace& place) {
     point = {};
     const bool met = scene_.world->nearest(ray, ray_kind, point);
     if (const Medium* medium = segment_.around.medium(); medium != nullptr) {
-      const Flight flight = fly(*medium, met ? &point : nullptr, numbers, place);
-      if (flight != Flight::passed) return flight == Flight::scattered;
+      const bool held_out = is_held_out(segment_.around.body());
+      const Flight flight = fly(*medium, met ? &point : nullptr, numbers, place, held_out);
+      if (flight != Flight::passed) return flight == Flight::scattered && !held_out;
     }
     if (!met) {
       watcher_.leaves(segment_);
@@ -60,7 +60,12 @@ bool RandomWalk::next(ScatteringPlace& place) {
     const SceneObject& object = scene_.objects[point.object];
     const bool unseen = is_unseen(object, point, ray.direction, ray_kind);
     const bool passed = unseen || goes_straight(object, point, segment_.around, passing);
-    if (!unseen) watcher_.meets(segment_, point, object, passed);
+    const bool held_out = object.holdout && ray_kind == RayKind::camera;
+    if (!unseen && !held_out) watcher_.meets(segment_, point, object, passed);
+    if (held_out && !passed) {
+      watcher_.meets_holdout(object);
+      return false;
+    }
     if (!passed) {
       point.outside_index = segment_.around.index_outside(object.body);
       place.object = &object;
@@ -73,18 +78,26 @@ bool RandomWalk::next(ScatteringPlace& place) {
   return false;
 }
 
-/// Goes through `medium` to `surface` (null: to infinity), or to where it scatters.
+/// Whether the ray is the camera's and `body`, whose medium it goes through (may be null), a
+/// holdout.
+bool RandomWalk::is_held_out(const Body* body) const {
+  return segment_.kind == RayKind::camera && body != nullptr &&
+         scene_.objects[body->object].holdout;
+}
+
+/// Goes through `medium` to `surface` (null: to infinity), or to where it scatters. `held_out`: its
+/// light is not wanted.
 RandomWalk::Flight RandomWalk::fly(const Medium& medium, const SurfacePoint* surface,
-                                   MediaNumbers& numbers, ScatteringPlace& place) {
+                                   MediaNumbers& numbers, ScatteringPlace& place, bool held_out) {
   const Ray& ray = segment_.ray;
   const float t_max = surface != nullptr ? surface->t : kInfinity;
   const Vec4 u = numbers.next();
-  if (kind_.mode == TransportMode::radiance) {
+  if (kind_.mode == TransportMode::radiance && !held_out) {
     const Rgb emitted = medium.emitted(ray, t_max, u);
     if (!is_black(emitted)) watcher_.medium_emits(segment_, emitted);
   }
   place.flight = {ray, t_max, &medium, channel_shares(segment_.throughput), segment_.around.open()};
-  watcher_.flies(place.flight, surface, numbers);
+  if (!held_out) watcher_.flies(place.flight, surface, numbers);
   const MediumSample sample = medium.sample(ray, t_max, place.flight.shares, u);
   segment_.throughput *= sample.weight;
   if (is_black(segment_.throughput)) return Flight::absorbed;
@@ -106,10 +119,12 @@ std::optional<BsdfSample> RandomWalk::scatter(const ShadedSurface& surface,
   segment_.pdf = sample->delta ? 1.0 : static_cast<double>(sample->pdf);
   segment_.pdf_across = 0.0;
   if (is_scaled(kind_.mode, sample->scale_radiance)) eta_scale_ *= sample->eta * sample->eta;
+  segment_.kind = scene_.tells_rays_apart ? choose_kind(surface, wo, *sample) : RayKind::diffuse;
   if (!survives(u.w)) return std::nullopt;
   const SurfacePoint& point = surface.point();
   if (glm::dot(wo, point.ng) * glm::dot(sample->wi, point.ng) < 0.0F)
     cross(object, point, sample->wi, segment_.around);
+  keep_seen(scene_, segment_.kind, segment_.around);
   segment_.ray = spawn_ray(point, sample->wi);
   return sample;
 }
@@ -127,8 +142,29 @@ bool RandomWalk::scatter(const Medium& medium, const Vec3& position) {
   segment_.specular = false;
   segment_.pdf = static_cast<double>(pdf);
   segment_.pdf_across = 0.0;
+  segment_.kind = RayKind::volume;
+  keep_seen(scene_, segment_.kind, segment_.around);
   segment_.ray = {position, direction, kInfinity, ray.time};
   return survives(u.w);
+}
+
+/// The kind of the ray that goes on along `sample`, away from `wo`. What is reflected partly by the
+/// diffuse part of a surface is either, in proportion, and the throughput makes up for what of each
+/// channel is not: so what either meets brings on average what it brings to its part.
+RayKind RandomWalk::choose_kind(const ShadedSurface& surface, const Vec3& wo,
+                                const BsdfSample& sample) {
+  if (sample.transmitted) return RayKind::transmission;
+  if (sample.delta) return RayKind::glossy;
+  const Rgb diffuse = surface.diffuse_share(wo, sample.wi);
+  const Rgb shares = channel_shares(segment_.throughput);
+  const float probability = glm::dot(shares, diffuse);
+  const float u = MediaNumbers(sampler_, events_, kind_.passing).kind_number();
+  if (u < probability) {
+    segment_.throughput *= diffuse / probability;
+    return RayKind::diffuse;
+  }
+  if (probability < 1.0F) segment_.throughput *= (Rgb(1.0F) - diffuse) / (1.0F - probability);
+  return RayKind::glossy;
 }
 
 /// For direction (x, y), lobe (z) and roulette (w) of the next scattering event.

@@ -13,10 +13,11 @@ namespace hyades::core {
 /// The part of a path that leads on from its last vertex.
 struct PathSegment {
   Ray ray;
-  Rgb throughput{1.0F};   ///< what arrives at its end, before media take their part
-  double pdf = 1.0;       ///< density per solid angle of its direction; of delta lobes 1
-  bool specular = false;  ///< a delta lobe chose it: nothing else could have
-  MediumStack around;     ///< the bodies that it begins in
+  Rgb throughput{1.0F};            ///< what arrives at its end, before media take their part
+  double pdf = 1.0;                ///< density per solid angle of its direction; of delta lobes 1
+  bool specular = false;           ///< a delta lobe chose it: nothing else could have
+  MediumStack around;              ///< the bodies that it begins in
+  RayKind kind = RayKind::camera;  ///< of its ray; where all scattered ones see the same, diffuse
   /// Parallel rays, of light from infinitely far away or of a camera: their density per area across
   /// them; else 0.
   double pdf_across = 0.0;
@@ -48,6 +49,9 @@ class WalkWatcher {
   /// A surface, before the walk may scatter there; `passed`: it goes straight through.
   virtual void meets(const PathSegment& /*segment*/, const SurfacePoint& /*point*/,
                      const SceneObject& /*object*/, bool /*passed*/) {}
+
+  /// A holdout, where a walk from the camera ends.
+  virtual void meets_holdout(const SceneObject& /*object*/) {}
 
   /// The segment leaves the scene.
   virtual void leaves(const PathSegment& /*segment*/) {}
@@ -97,7 +101,9 @@ class RandomWalk {
   enum class Flight { passed, scattered, absorbed };
 
   Flight fly(const Medium& medium, const SurfacePoint* surface, MediaNumbers& numbers,
-             ScatteringPlace& place);
+             ScatteringPlace& place, bool held_out);
+  bool is_held_out(const Body* body) const;
+  RayKind choose_kind(const ShadedSurface& surface, const Vec3& wo, const BsdfSample& sample);
   Vec4 event_numbers();
   bool survives(float u);
 

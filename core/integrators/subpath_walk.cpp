@@ -85,7 +85,7 @@ void lengthen(Subpath& path, RandomWalk& walk, int most, SubpathWatcher& watcher
   while (path.size() < most) {
     const PathVertex* const vertex = add_vertex(path, walk, place);
     if (vertex == nullptr) return;
-    watcher.arrives(*vertex);
+    if (!watcher.arrives(*vertex)) return path.drop_last();
     if (path.size() >= most || !scatter(path, walk)) return;
     watcher.goes_on(*vertex, walk.segment());
   }

@@ -11,8 +11,8 @@ double density_at(const PathSegment& segment, const PathVertex& v, const Vec3& f
 /// What a walk meets that keeps its vertices.
 class SubpathWatcher : public WalkWatcher {
  public:
-  /// A vertex was added; the walk has not gone on from it.
-  virtual void arrives(const PathVertex& /*vertex*/) {}
+  /// A vertex was added; the walk has not gone on from it. False: the path ends before it.
+  virtual bool arrives(const PathVertex& /*vertex*/) { return true; }
 
   /// The walk goes on from its last vertex along `segment`.
   virtual void goes_on(const PathVertex& /*from*/, const PathSegment& /*segment*/) {}

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstdint>
+
 #include "core/integrators/integrator.h"
 #include "core/integrators/media_numbers.h"
 
@@ -8,9 +10,9 @@ namespace hyades::core {
 /// An unbiased estimate of the share of light that comes along `shadow` neither blocked nor
 /// scattered: 0 where a surface stands in the way; what surfaces that are not all there and
 /// media between, which begin and end at null surfaces, let through. `around`: the bodies that the
-/// ray begins in.
+/// ray begins in; `blockers`: the list of objects that cast shadows in the light.
 Rgb visible_share(const Scene& scene, const Ray& shadow, const MediumStack& around,
-                  MediaNumbers numbers, Workspace& work);
+                  MediaNumbers numbers, Workspace& work, uint8_t blockers = 0);
 
 /// From a surface, or from a place in space, to the place of a light that was chosen.
 Ray shadow_ray(const SurfacePoint& from, const LightSample& to);
@@ -44,6 +46,21 @@ inline bool goes_straight(const SceneObject& object, const SurfacePoint& point,
   const float share = straight_share(object, point, around);
   return share >= 1.0F || (share > 0.0F && numbers.next_number() < share);
 }
+
+/// Takes the bodies out of `around` that rays of `kind` do not see: those are not in them.
+inline void keep_seen(const Scene& scene, RayKind kind, MediumStack& around) {
+  if (!scene.hides_bodies) return;
+  around.keep(
+      [&](const Body& body) { return meet(scene.world->placement(body.object).seen_by, kind); });
+}
+
+/// Whether `object` casts shadows in the light of lights whose blockers are list `blockers`.
+inline bool is_blocker(const SceneObject& object, uint8_t blockers) {
+  return (object.in_lists >> blockers & 1U) != 0;
+}
+
+/// Takes out of `around` what is not on the list `blockers`, the atmosphere too.
+void keep_blockers(const Scene& scene, uint8_t blockers, MediumStack& around);
 
 /// Tells `around` that a path crossed the surface of `object` at `point` towards `direction`.
 void cross(const SceneObject& object, const SurfacePoint& point, const Vec3& direction,

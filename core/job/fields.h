@@ -79,6 +79,13 @@ class FieldVisitor {
     if (second != first) put(second_line, second);
   }
   void name_of(const KeyName& key, const std::string& value, NameKind /*kind*/) { put(key, value); }
+  /// No list is another thing than an empty one.
+  void names_of(const KeyName& key, const std::optional<std::vector<std::string>>& names,
+                NameKind kind) {
+    if (!names) return;
+    put(key, static_cast<uint32_t>(names->size()));
+    for (const std::string& name : *names) derived().name_of(key, name, kind);
+  }
   void frame_file(const KeyName& key, const std::string& value, FrameFiles /*files*/) {
     derived().file(key, value);
   }

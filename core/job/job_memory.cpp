@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <unordered_set>
@@ -86,6 +87,11 @@ class HeapBytes : public FieldVisitor<HeapBytes> {
       add(step.angle);
       add(step.quaternion);
     }
+  }
+  void names_of(const KeyName& key, const std::optional<std::vector<std::string>>& names,
+                NameKind kind) {
+    if (names) add_block(*names);
+    FieldVisitor::names_of(key, names, kind);
   }
   void children(const KeyName& /*key*/, const std::vector<ObjectDesc>& objects) {
     add_all(objects);

@@ -9,6 +9,7 @@
 #include "core/job/kinds_of.h"
 #include "core/job/source.h"
 #include "core/job/transform_desc.h"
+#include "core/job/visibility_desc.h"
 
 /// Lights: one struct per type, each with its keys. What makes a light of them stands in
 /// core/scene/light_makers.cpp.
@@ -109,11 +110,15 @@ struct LightDesc {
   LightKind kind;
   TransformList transform;  ///< of all places and directions of it, and of its picture; after them
   std::string light_group;  ///< empty: none
+  VisibilityDesc visible;   ///< to scattered rays
+  LightLinkDesc links;
 
   template <class Self, class Visitor>
   static void fields(Self& self, Visitor& visit) {
     visit.enter_section("lights");
     visit.transform("transform", self.transform);
+    VisibilityDesc::scattered_fields(self.visible, visit);
+    LightLinkDesc::fields(self.links, visit);
     visit.enter_section("lights." + KindsOf<LightKind>::name(self.kind));
     std::visit([&](auto& kind) { kind.fields(kind, visit); }, self.kind);
     visit.light_group("light_group", self.light_group);
@@ -151,8 +156,9 @@ struct EnvironmentDesc {
   Animated<Rgb> color{Rgb(1.0F)};  ///< constant colour, or a tint of the image
   Animated<float> rotate_y{0.0F};
   Animated<float> strength{1.0F};
-  bool visible_to_camera = true;
+  VisibilityDesc visible;   ///< but to shadow rays
   std::string light_group;  ///< empty: none
+  LightLinkDesc links;
 
   template <class Self, class Visitor>
   static void fields(Self& self, Visitor& visit) {
@@ -161,8 +167,10 @@ struct EnvironmentDesc {
     visit.color("color", self.color, kNotNegative.in("W/(m² sr)"));
     visit.animated("rotate_y", self.rotate_y, kAnyNumber.in("degrees"));
     visit.animated("strength", self.strength, kNotNegative);
-    visit.flag("visible_to_camera", self.visible_to_camera);
+    visit.flag("visible_to_camera", self.visible.camera);
+    VisibilityDesc::scattered_fields(self.visible, visit);
     visit.light_group("light_group", self.light_group);
+    LightLinkDesc::fields(self.links, visit);
   }
 };
 

@@ -226,6 +226,28 @@ void MapReader::name_of(std::string_view key, std::string& target, NameKind kind
   context_.names.push_back({kind, name, where_of(key), label});
 }
 
+void MapReader::names_of(std::string_view key, std::optional<std::vector<std::string>>& target,
+                         NameKind kind) {
+  if (listing()) tell(key, {.takes = "texts"});
+  const YamlNode* node = find(key);
+  if (node == nullptr) return;
+  const std::string expected = "a list of names, such as [ball, tree/trunk]";
+  // What scripts write for an empty list may be an empty map.
+  const bool none = node->kind == YamlNode::Kind::map && node->map.empty();
+  if (node->kind != YamlNode::Kind::list && !none) return mismatch(key, *node, expected);
+  target.emplace();
+  for (const YamlPtr& item : node->list) {
+    if (!context_.spend(weight_of_text(item->scalar.size()), item->where)) return;
+    if (item->kind != YamlNode::Kind::scalar || item->scalar.empty()) {
+      mismatch(key, *item, expected);
+      continue;
+    }
+    target->push_back(item->scalar);
+    context_.names.push_back({kind, item->scalar.substr(0, item->scalar.find('/')), item->where,
+                              fmt::format("{} of {}", key, what_)});
+  }
+}
+
 void MapReader::file(std::string_view key, std::string& target) {
   std::string name;
   text(key, name, "a file name");

@@ -87,6 +87,11 @@ class MapReader {
                std::string& second, std::span<const std::string> names);
   /// The name of something that the job defines; that it exists is checked at the end.
   void name_of(std::string_view key, std::string& target, NameKind kind);
+  /// A list of such names, which may be empty; of objects also what is in them ("tree/trunk", of
+  /// which what stands before the first slash is checked); `target` stays empty where the key is
+  /// absent.
+  void names_of(std::string_view key, std::optional<std::vector<std::string>>& target,
+                NameKind kind);
   /// The name of a texture, or one written in place. It must be there.
   void texture(std::string_view key, std::string& target);
   /// A file, relative to where it is written; that it opens is checked at the end.

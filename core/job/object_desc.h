@@ -12,6 +12,7 @@
 #include "core/job/inputs.h"
 #include "core/job/source.h"
 #include "core/job/transform_desc.h"
+#include "core/job/visibility_desc.h"
 
 namespace hyades::core {
 
@@ -26,6 +27,7 @@ struct EmitDesc {
   Animated<float> spread{
       180.0F};              ///< twice the angle from the normal that light leaves at, at most
   std::string light_group;  ///< empty: none
+  LightLinkDesc links;
 
   template <class Self, class Visitor>
   static void fields(Self& self, Visitor& visit) {
@@ -35,6 +37,7 @@ struct EmitDesc {
     visit.flag("two_sided", self.two_sided);
     visit.animated("spread", self.spread, Range{0.0, 180.0, true}.in("degrees"));
     visit.light_group("light_group", self.light_group);
+    LightLinkDesc::fields(self.links, visit);
   }
 };
 
@@ -91,7 +94,8 @@ struct ObjectDesc {
   /// Materials that objects in it have, and those that they get instead: names.
   std::vector<std::pair<std::string, std::string>> overrides;
   std::optional<EmitDesc> emit;
-  bool visible_to_camera = true;
+  VisibilityDesc visible;
+  bool holdout = false;  ///< where the camera sees it, the picture is transparent
   std::optional<DisplacementDesc> displacement;  ///< of meshes
 
   /// The keys of all objects, then those of its shape.
@@ -101,7 +105,10 @@ struct ObjectDesc {
     visit.name_of("material", self.material, NameKind::material);
     visit.overrides("override", self.overrides);
     visit.place(self.transform, self.at);
-    visit.flag("visible_to_camera", self.visible_to_camera);
+    visit.flag("visible_to_camera", self.visible.camera);
+    VisibilityDesc::scattered_fields(self.visible, visit);
+    visit.flag("visible_to_shadow", self.visible.shadow);
+    visit.flag("holdout", self.holdout);
     if (self.shape == "instance") {
       visit.name_of(KeyName{"instance", "instance_of"}, self.instance_of, NameKind::group);
       visit.enter_section("objects.instance");

@@ -101,6 +101,54 @@ void check_noise(MapReader& top, const Job& job) {
                   job.integrator.type));
 }
 
+/// The first of the switches that is off for rays other than the camera's; null: none.
+const char* hidden_from(const VisibilityDesc& visible) {
+  if (!visible.diffuse) return "visible_to_diffuse: false";
+  if (!visible.glossy) return "visible_to_glossy: false";
+  if (!visible.transmission) return "visible_to_transmission: false";
+  if (!visible.volume) return "visible_to_volume: false";
+  return visible.shadow ? nullptr : "visible_to_shadow: false";
+}
+
+/// A path from a light does not know how the camera's end of it will be scattered, which decides
+/// what sees what, and is stopped by whatever it meets.
+class RayChecks {
+ public:
+  RayChecks(MapReader& top, const Job& job) : top_(top), job_(job) {}
+
+  void check() {
+    if (!makes_splats(job_.integrator)) return;
+    for_each_object(job_, [&](const ObjectDesc& object) {
+      const std::string what = "object '" + object.name + "'";
+      check(object.visible, object.where, what);
+      if (object.emit) check(object.emit->links, "emit of " + what);
+    });
+    for (const LightDesc& light : job_.lights) {
+      check(light.visible, light.where, "light '" + light.name + "'");
+      check(light.links, "light '" + light.name + "'");
+    }
+    if (!job_.environment) return;
+    check(job_.environment->visible, job_.environment->where, "the environment");
+    check(job_.environment->links, "the environment");
+  }
+
+ private:
+  void check(const VisibilityDesc& visible, const SourceLocation& where, const std::string& what) {
+    if (const char* key = hidden_from(visible)) refuse(where, what, key);
+  }
+  void check(const LightLinkDesc& links, const std::string& what) {
+    if (links.shadow_linking) refuse(links.shadow_linking->where, what, "shadow_linking");
+  }
+  void refuse(const SourceLocation& where, const std::string& what, const char* key) {
+    top_.complain(where, fmt::format("{} has {}, which the integrator {} does not know; expected "
+                                     "integrator: path",
+                                     what, key, job_.integrator.type));
+  }
+
+  MapReader& top_;
+  const Job& job_;
+};
+
 }  // namespace
 
 void read_job(MapReader& top, Job& job) {
@@ -125,6 +173,7 @@ void read_job(MapReader& top, Job& job) {
   read_lights(top);
   read_environment(top, job);
   read_atmosphere(top, job);
+  RayChecks(top, job).check();
   top.flag("keep_films", job.keep_films);
   top.choice("denoise", job.denoise, denoise_names());
   read_color_config(top, job);

@@ -45,6 +45,11 @@ constexpr OldLine kOldCameraLines[] = {
     {"focus_object", kNoText},
 };
 
+constexpr OldLine kOldEnvironmentLines[] = {
+    {"image"},       {"sky.*"}, {"color"}, {"rotate_y"}, {"strength"}, {"visible_to_camera"},
+    {"light_group"},
+};
+
 /// Light paths bring light to all pixels that are rendered, and their number is that of these.
 void write_region(FieldWriter& out, const FilmDesc& film) {
   const PixelRect region = render_window(film);
@@ -92,7 +97,7 @@ std::string resolved_job_text(const Job& job, int32_t frame,
   }
   out.children("objects", job.objects);
   for (const LightDesc& light : job.lights) write_light(out, light);
-  out.map("environment", "", job.environment);
+  if (job.environment) write_desc(out, "environment", *job.environment, kOldEnvironmentLines);
   if (!job.atmosphere.empty()) out.put("atmosphere", job.atmosphere);
   // Other frames' files are no business of this one.
   std::set<std::string> others = sequence_files(job, out.sequences());

@@ -125,11 +125,17 @@ LightTree::LightTree(std::vector<Entry> entries, size_t lights) {
   ways_.assign(lights, 0);
   nodes_.reserve(2 * entries.size() - 1);
   nodes_.emplace_back();
+  const bool linked = std::any_of(entries.begin(), entries.end(),
+                                  [](const Entry& entry) { return entry.receivers != kAllLists; });
+  if (linked) receivers_.resize(nodes_.capacity());
   build(0, entries, 0, entries.size(), 0, 0);
 }
 
 LightBounds LightTree::build(uint32_t node, std::vector<Entry>& entries, size_t begin, size_t end,
                              uint64_t way, int depth) {
+  if (!receivers_.empty()) {
+    for (size_t i = begin; i < end; ++i) receivers_[node] |= entries[i].receivers;
+  }
   if (end - begin == 1) {
     nodes_[node] = node_of(entries[begin].bounds, 1);
     nodes_[node].child = entries[begin].index;

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/lights/light_bounds.h"
+#include "core/lights/light_selector.h"
 
 namespace hyades::core {
 
@@ -38,6 +39,7 @@ class LightTree {
   struct Entry {
     uint32_t index = 0;
     LightBounds bounds;
+    ListBits receivers = kAllLists;  ///< the bit of the list that it is linked to
   };
 
   LightTree() = default;
@@ -47,6 +49,12 @@ class LightTree {
   const LightTreeNode& root() const { return nodes_[0]; }
   const LightTreeNode& child(const LightTreeNode& of, bool second) const {
     return nodes_[of.child + (second ? 1U : 0U)];
+  }
+
+  /// Whether a light of `node`, of this tree, is linked to what is in `lists`.
+  bool links(const LightTreeNode& node, ListBits lists) const {
+    return receivers_.empty() ||
+           (receivers_[static_cast<size_t>(&node - nodes_.data())] & lists) != 0;
   }
 
   /// Whether light `index` is in the tree.
@@ -61,6 +69,7 @@ class LightTree {
                     uint64_t way, int depth);
 
   std::vector<LightTreeNode> nodes_;  ///< the root first, children always in pairs
+  std::vector<ListBits> receivers_;   ///< by node, of all its lights; empty: all are linked to all
   std::vector<uint64_t> ways_;        ///< by light; 0: not in the tree; else with kEnd on top
 };
 

@@ -17,21 +17,23 @@ class PowerSelector : public LightSelector {
  public:
   explicit PowerSelector(const std::vector<float>& powers) : distribution_(powers) {}
 
-  std::optional<SelectedLight> select(const Vec3& /*from*/, const Vec3& /*normal*/,
-                                      float u) const override {
+  std::optional<SelectedLight> select(const Vec3& /*from*/, const Vec3& /*normal*/, float u,
+                                      ListBits /*lists*/) const override {
     return select_emitter(u);
   }
 
-  float probability(const Vec3& /*from*/, const Vec3& /*normal*/, uint32_t light) const override {
+  float probability(const Vec3& /*from*/, const Vec3& /*normal*/, uint32_t light,
+                    ListBits /*lists*/) const override {
     return emitter_probability(light);
   }
 
-  std::optional<SelectedLight> select_along(const Ray& /*way*/, float /*length*/,
-                                            float u) const override {
+  std::optional<SelectedLight> select_along(const Ray& /*way*/, float /*length*/, float u,
+                                            ListBits /*lists*/) const override {
     return select_emitter(u);
   }
 
-  float probability_along(const Ray& /*way*/, float /*length*/, uint32_t light) const override {
+  float probability_along(const Ray& /*way*/, float /*length*/, uint32_t light,
+                          ListBits /*lists*/) const override {
     return emitter_probability(light);
   }
 

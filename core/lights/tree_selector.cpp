@@ -17,21 +17,6 @@ namespace {
 constexpr float kSteps = 0x1p24F;
 constexpr uint32_t kAllSteps = 1U << 24U;
 
-/// How many of `steps` the first of two children gets. Each light whose importance is not known to
-/// be 0 keeps at least one.
-uint32_t share_of_first(uint32_t steps, float first, float second, const LightTreeNode& one,
-                        const LightTreeNode& other) {
-  if (!(first > 0.0F) && !(second > 0.0F)) {  // what the parent hoped for is in neither
-    first = one.intensity;
-    second = other.intensity;
-  }
-  if (!(second > 0.0F)) return steps;
-  if (!(first > 0.0F)) return 0;
-  const uint32_t spare = steps - one.count() - other.count();
-  const double share = double{first} / (double{first} + double{second});
-  return one.count() + static_cast<uint32_t>(static_cast<double>(spare) * share);
-}
-
 /// How often a node that is near is looked into before it is judged.
 constexpr int kLookAhead = 2;
 
@@ -47,10 +32,13 @@ float look_into(const LightTree& tree, const LightTreeNode& node, const Importan
 }
 
 struct AtPoint {
+  const LightTree& tree;
   const Vec3& from;
   const Vec3& normal;
+  ListBits lists;
+  bool links(const LightTreeNode& node) const { return tree.links(node, lists); }
   float operator()(const LightTreeNode& node) const {
-    return importance::at_point(node, from, normal);
+    return links(node) ? importance::at_point(node, from, normal) : 0.0F;
   }
   bool near(const LightTreeNode& node) const {
     const Vec3 way = node.center - from;
@@ -59,13 +47,32 @@ struct AtPoint {
 };
 
 struct AlongWay {
+  const LightTree& tree;
   const Ray& way;
   float length;
+  ListBits lists;
+  bool links(const LightTreeNode& node) const { return tree.links(node, lists); }
   float operator()(const LightTreeNode& node) const {
-    return importance::along_way(node, way, length);
+    return links(node) ? importance::along_way(node, way, length) : 0.0F;
   }
   bool near(const LightTreeNode&) const { return false; }
 };
+
+/// How many of `steps` the first of two children gets. Each light whose importance is not known to
+/// be 0 keeps at least one.
+template <class Importance>
+uint32_t share_of_first(uint32_t steps, float first, float second, const LightTreeNode& one,
+                        const LightTreeNode& other, const Importance& importance) {
+  if (!(first > 0.0F) && !(second > 0.0F)) {  // what the parent hoped for is in neither
+    first = importance.links(one) ? one.intensity : 0.0F;
+    second = importance.links(other) ? other.intensity : 0.0F;
+  }
+  if (!(second > 0.0F)) return steps;
+  if (!(first > 0.0F)) return 0;
+  const uint32_t spare = steps - one.count() - other.count();
+  const double share = double{first} / (double{first} + double{second});
+  return one.count() + static_cast<uint32_t>(static_cast<double>(spare) * share);
+}
 
 /// What an infinite light brings to a surface that faces all of it [W/m^2, luminance].
 double irradiance_of(const Light& light) {
@@ -81,43 +88,43 @@ double irradiance_of(const Light& light) {
 
 class TreeSelector : public LightSelector {
  public:
-  explicit TreeSelector(const std::vector<LightPtr>& lights)
-      : emitters_(make_power_selector(lights)), infinite_place_(lights.size(), 0) {
+  TreeSelector(const std::vector<LightPtr>& lights, const std::vector<uint8_t>& receivers)
+      : emitters_(make_power_selector(lights)), is_infinite_(lights.size(), false) {
     std::vector<LightTree::Entry> entries;
-    std::vector<double> powers;
-    double sum = 0.0;
     for (uint32_t i = 0; i < lights.size(); ++i) {
       const Light& light = *lights[i];
-      if (const auto bounds = light.bounds()) entries.push_back({i, *bounds});
+      const uint8_t list = receivers.empty() ? uint8_t{0} : receivers[i];
+      const ListBits bits = list == 0 ? kAllLists : ListBits{1} << list;
+      if (const auto bounds = light.bounds()) entries.push_back({i, *bounds, bits});
       if (!light.is_infinite() || !(light.power() > 0.0F)) continue;
-      infinite_.push_back(i);
-      infinite_place_[i] = static_cast<uint32_t>(infinite_.size());
-      sum += static_cast<double>(std::min(light.power(), 1e37F));
-      powers.push_back(sum);
+      const auto power = static_cast<double>(std::min(light.power(), 1e37F));
+      infinite_.push_back({i, power, irradiance_of(light), bits});
+      is_infinite_[i] = true;
     }
-    for (const double power : powers) up_to_.push_back(power / sum);
-    for (const uint32_t i : infinite_) irradiance_ += irradiance_of(*lights[i]);
     has_tree_ = !entries.empty();
     tree_ = LightTree(std::move(entries), lights.size());
   }
 
   bool empty() const override { return emitters_->empty(); }
 
-  std::optional<SelectedLight> select(const Vec3& from, const Vec3& normal,
-                                      float u) const override {
-    return select_by(u, AtPoint{from, normal});
+  std::optional<SelectedLight> select(const Vec3& from, const Vec3& normal, float u,
+                                      ListBits lists) const override {
+    return select_by(u, AtPoint{tree_, from, normal, lists});
   }
 
-  float probability(const Vec3& from, const Vec3& normal, uint32_t light) const override {
-    return probability_by(light, AtPoint{from, normal});
+  float probability(const Vec3& from, const Vec3& normal, uint32_t light,
+                    ListBits lists) const override {
+    return probability_by(light, AtPoint{tree_, from, normal, lists});
   }
 
-  std::optional<SelectedLight> select_along(const Ray& way, float length, float u) const override {
-    return select_by(u, AlongWay{way, length});
+  std::optional<SelectedLight> select_along(const Ray& way, float length, float u,
+                                            ListBits lists) const override {
+    return select_by(u, AlongWay{tree_, way, length, lists});
   }
 
-  float probability_along(const Ray& way, float length, uint32_t light) const override {
-    return probability_by(light, AlongWay{way, length});
+  float probability_along(const Ray& way, float length, uint32_t light,
+                          ListBits lists) const override {
+    return probability_by(light, AlongWay{tree_, way, length, lists});
   }
 
   std::optional<SelectedLight> select_emitter(float u) const override {
@@ -132,55 +139,90 @@ class TreeSelector : public LightSelector {
   /// How the numbers are shared out at a place: the tree's steps come first.
   struct Shares {
     uint32_t tree = 0;
-    uint32_t first = 0;  ///< of the tree's, of its root's first child
+    uint32_t first = 0;     ///< of the tree's, of its root's first child
+    uint32_t infinite = 0;  ///< how many infinite lights share the others
+    double power = 0.0;     ///< of those together
+  };
+
+  /// An infinite light.
+  struct Infinite {
+    uint32_t index = 0;
+    double power = 0.0;
+    double irradiance = 0.0;  ///< straight on [W/m^2]
+    ListBits receivers = kAllLists;
   };
 
   template <class Importance>
   Shares shares_at(const Importance& importance) const {
-    if (!has_tree_) return {};
+    Shares shares;
+    double irradiance = 0.0;
+    for (const Infinite& light : infinite_) {
+      if ((light.receivers & importance.lists) == 0) continue;
+      ++shares.infinite;
+      shares.power += light.power;
+      irradiance += light.irradiance;
+    }
+    if (!has_tree_ || !importance.links(tree_.root())) return shares;
     const LightTreeNode& root = tree_.root();
-    const bool alone = infinite_.empty();
+    const bool alone = shares.infinite == 0;
     if (root.is_leaf()) {
-      return {alone ? kAllSteps : steps_of_tree(importance, importance(root)), 0};
+      shares.tree = alone ? kAllSteps : steps_of_tree(importance, importance(root), irradiance);
+      return shares;
     }
     const LightTreeNode& one = tree_.child(root, false);
     const LightTreeNode& other = tree_.child(root, true);
     const float first = look_into(tree_, one, importance, kLookAhead);
     const float second = look_into(tree_, other, importance, kLookAhead);
-    const uint32_t steps = alone ? kAllSteps : steps_of_tree(importance, first + second);
-    return {steps, share_of_first(steps, first, second, one, other)};
+    shares.tree = alone ? kAllSteps : steps_of_tree(importance, first + second, irradiance);
+    shares.first = share_of_first(shares.tree, first, second, one, other, importance);
+    return shares;
   }
 
   /// Half, and up to a half of that more or less by what lamps and skies may bring to the place.
   /// What stands between is not known: neither may be left to chance.
-  uint32_t steps_of_tree(const AtPoint&, float expected) const {
+  static uint32_t steps_of_tree(const AtPoint&, float expected, double irradiance) {
     const double lamps = expected > 0.0F ? std::min(static_cast<double>(expected), 1e30) : 0.0;
-    const double both = lamps + irradiance_;
+    const double both = lamps + irradiance;
     const double share = both > 0.0 ? lamps / both : 0.5;
     return static_cast<uint32_t>((0.25 + 0.5 * share) * double{kSteps});
   }
   /// Along a way the tree tells of no irradiance.
-  static uint32_t steps_of_tree(const AlongWay&, float) { return kAllSteps / 2; }
+  static uint32_t steps_of_tree(const AlongWay&, float, double) { return kAllSteps / 2; }
 
-  /// Where the run of infinite light `place` begins among `steps`, of which each has one at least.
-  uint32_t begin_of(uint32_t place, uint32_t steps) const {
-    const auto count = static_cast<uint32_t>(infinite_.size());
-    if (place == 0) return 0;
-    if (place == count) return steps;
-    return place + static_cast<uint32_t>(static_cast<double>(steps - count) * up_to_[place - 1]);
+  /// Calls visit(light, begin, end) for the runs of `steps` that the infinite lights of `lists`
+  /// share, one step at least for each, until it returns true.
+  template <class Visit>
+  void for_runs(const Shares& shares, ListBits lists, const Visit& visit) const {
+    const uint32_t steps = kAllSteps - shares.tree;
+    uint32_t begin = 0;
+    uint32_t place = 0;
+    double up_to = 0.0;
+    for (const Infinite& light : infinite_) {
+      if ((light.receivers & lists) == 0) continue;
+      up_to += light.power;
+      ++place;
+      const auto rest = static_cast<double>(steps - shares.infinite);
+      const uint32_t end = place == shares.infinite
+                               ? steps
+                               : place + static_cast<uint32_t>(rest * (up_to / shares.power));
+      if (visit(light, begin, end)) return;
+      begin = end;
+    }
   }
 
   template <class Importance>
   std::optional<SelectedLight> select_by(float u, const Importance& importance) const {
-    if (!has_tree_ && infinite_.empty()) return std::nullopt;
     auto step = static_cast<uint32_t>(std::clamp(u, 0.0F, 0x1.fffffep-1F) * kSteps);
     const Shares shares = shares_at(importance);
     if (step >= shares.tree) {
       step -= shares.tree;
-      const uint32_t rest = kAllSteps - shares.tree;
-      uint32_t place = 0;
-      while (begin_of(place + 1, rest) <= step) ++place;
-      return SelectedLight{infinite_[place], probability_of_infinite(place, rest)};
+      std::optional<SelectedLight> selected;
+      for_runs(shares, importance.lists, [&](const Infinite& light, uint32_t begin, uint32_t end) {
+        if (step >= end) return false;
+        selected = SelectedLight{light.index, static_cast<float>(end - begin) / kSteps};
+        return true;
+      });
+      return selected;
     }
     uint32_t steps = shares.tree;
     const LightTreeNode* node = &tree_.root();
@@ -198,11 +240,18 @@ class TreeSelector : public LightSelector {
 
   template <class Importance>
   float probability_by(uint32_t light, const Importance& importance) const {
-    if (light >= infinite_place_.size()) return 0.0F;
-    const uint32_t place = infinite_place_[light];
-    if (place == 0 && !(has_tree_ && tree_.holds(light))) return 0.0F;
+    if (light >= is_infinite_.size()) return 0.0F;
+    if (!is_infinite_[light] && !(has_tree_ && tree_.holds(light))) return 0.0F;
     const Shares shares = shares_at(importance);
-    if (place > 0) return probability_of_infinite(place - 1, kAllSteps - shares.tree);
+    if (is_infinite_[light]) {
+      float probability = 0.0F;
+      for_runs(shares, importance.lists, [&](const Infinite& run, uint32_t begin, uint32_t end) {
+        if (run.index != light) return false;
+        probability = static_cast<float>(end - begin) / kSteps;
+        return true;
+      });
+      return probability;
+    }
     uint64_t way = tree_.way_to(light);
     uint32_t steps = shares.tree;
     const LightTreeNode* node = &tree_.root();
@@ -224,26 +273,21 @@ class TreeSelector : public LightSelector {
                        const Importance& importance) const {
     if (&node == &tree_.root()) return shares.first;
     return share_of_first(steps, look_into(tree_, one, importance, kLookAhead),
-                          look_into(tree_, other, importance, kLookAhead), one, other);
-  }
-
-  float probability_of_infinite(uint32_t place, uint32_t steps) const {
-    return static_cast<float>(begin_of(place + 1, steps) - begin_of(place, steps)) / kSteps;
+                          look_into(tree_, other, importance, kLookAhead), one, other, importance);
   }
 
   std::unique_ptr<LightSelector> emitters_;  ///< for light paths
   LightTree tree_;
   bool has_tree_ = false;
-  std::vector<uint32_t> infinite_;        ///< these lights
-  std::vector<double> up_to_;             ///< part of their power that they have with all before
-  std::vector<uint32_t> infinite_place_;  ///< by light: its place in infinite_, plus 1; 0: none
-  double irradiance_ = 0.0;               ///< of all infinite lights, straight on [W/m^2]
+  std::vector<Infinite> infinite_;  ///< those with power
+  std::vector<bool> is_infinite_;   ///< by light: whether it is one of them
 };
 
 }  // namespace
 
-std::unique_ptr<LightSelector> make_tree_selector(const std::vector<LightPtr>& lights) {
-  return std::make_unique<TreeSelector>(lights);
+std::unique_ptr<LightSelector> make_tree_selector(const std::vector<LightPtr>& lights,
+                                                  const std::vector<uint8_t>& receivers) {
+  return std::make_unique<TreeSelector>(lights, receivers);
 }
 
 }  // namespace hyades::core

@@ -63,6 +63,7 @@ class BodyMaker {
 
   Status add_all() {
     if (auto done = check_priorities(); !done) return done;
+    if (auto done = check_glass(); !done) return done;
     if (!light_asks_for_bodies()) return {};
     for (size_t i = 0; i < objects_.size(); ++i) {
       // Further parts of a surface share what is inside.
@@ -105,6 +106,20 @@ class BodyMaker {
     return {};
   }
 
+  /// Rays that went in are of a kind that must see the surface from within.
+  Status check_glass() const {
+    for (size_t i = 0; i < objects_.size(); ++i) {
+      const FlatObject& object = objects_[i];
+      if (meet(object.placement.seen_by, RayKind::transmission) || !has_inside(*object.desc) ||
+          !scene_.objects[i].material->leads_inside()) {
+        continue;
+      }
+      return at_object(object, Error{"light goes into it and must come out again; expected "
+                                     "visible_to_transmission: true"});
+    }
+    return {};
+  }
+
   /// Without media it matters only what else a surface refracts against.
   bool light_asks_for_bodies() const {
     if (scene_.has_media) return true;
@@ -114,19 +129,33 @@ class BodyMaker {
     return refracting > 1;
   }
 
+  /// What fills a body is there for all rays but the camera's. `filled`: with a medium.
+  Status check_visible(const FlatObject& object, bool filled) {
+    const RayKind seen_by = object.placement.seen_by;
+    scene_.hides_bodies |= (seen_by | RayKind::camera) != RayKind::all;
+    if (filled && !meet(seen_by, RayKind::camera) && makes_splats(job_.integrator)) {
+      return at_object(
+          object, Error{"it is not visible to the camera but has an interior, which light paths "
+                        "would show; expected visible_to_camera: true, or integrator: path"});
+    }
+    if (filled && (seen_by | RayKind::camera) != RayKind::all) {
+      return at_object(object,
+                       Error{"it has an interior or a subsurface, which all rays but the camera's "
+                             "must see; expected visible_to_diffuse, _glossy, _transmission, "
+                             "_volume and _shadow: true"});
+    }
+    return {};
+  }
+
   /// In scenes with media even an empty glass matters, for it keeps the atmosphere out.
   Status add(const FlatObject& object, SceneObject& added) {
     auto interior = interior_of(object);
     if (!interior) return at_object(object, interior.error());
     const bool entered = has_inside(*object.desc) && added.material->leads_inside();
     if (*interior == nullptr && !entered) return {};
-    if (*interior != nullptr && !object.placement.visible_to_camera &&
-        makes_splats(job_.integrator)) {
-      return at_object(
-          object, Error{"it is not visible to the camera but has an interior, which light paths "
-                        "would show; expected visible_to_camera: true, or integrator: path"});
-    }
+    if (auto done = check_visible(object, *interior != nullptr); !done) return done;
     Body& body = scene_.bodies.emplace_back();
+    body.object = static_cast<uint32_t>(&added - scene_.objects.data());
     body.medium = *interior;
     body.filled_with = object.desc->interior;
     body.index = entered ? added.material->index() : 0.0F;

@@ -25,6 +25,7 @@
 #include "core/scene/environment_makers.h"
 #include "core/scene/exteriors.h"
 #include "core/scene/flatten.h"
+#include "core/scene/light_linking.h"
 #include "core/scene/light_makers.h"
 #include "core/scene/media_around.h"
 #include "core/scene/scene_files.h"
@@ -55,6 +56,7 @@ class SceneBuilder {
     if (auto done = add_objects(); !done) return done.error();
     if (auto done = add_lights(); !done) return done.error();
     if (auto done = add_environment(); !done) return done.error();
+    link_objects();
     warn_of_darkness();
     for (std::string& doubt : doubtful_light_colors(job_)) {
       scene_->warnings.push_back(std::move(doubt));
@@ -62,7 +64,7 @@ class SceneBuilder {
     if (auto done = add_camera(); !done) return done.error();
     if (auto done = add_motion(); !done) return done.error();
     add_media_around_camera();
-    scene_->selector = make_tree_selector(scene_->lights);
+    scene_->selector = make_tree_selector(scene_->lights, receivers());
     scene_->resolution = {job_.film.width, job_.film.height};
     scene_->window = render_window(job_.film);
     scene_->texture_memory = cache_.image_memory();
@@ -84,6 +86,7 @@ class SceneBuilder {
       const std::string& look = object.material.empty() ? kDefaultMaterial : object.material;
       scene_->objects.push_back({.material = *material,
                                  .front_only = front_only.contains(look),
+                                 .holdout = object.holdout,
                                  .name = object.name,
                                  .material_name = look,
                                  .ids = {id_of(object.name), id_of(look)}});
@@ -100,6 +103,8 @@ class SceneBuilder {
     if (auto done = add_bodies(job_, *flat, looks_, *scene_, placements); !done) return done;
     scene_->medium_groups = looks_.medium_groups();
     warn_of_open_bodies(*flat, cache_, *scene_);
+    lists_.emplace(*scene_);
+    for (const Placement& placement : placements) note_rays(placement.seen_by);
     if (auto done = add_lamps(placements); !done) return done;
     auto world = cache_.world(std::move(placements), job_.render.render_class);
     if (!world) return blame(*flat, world.error());
@@ -125,7 +130,7 @@ class SceneBuilder {
       ball.shape.kind = Shape::Kind::sphere;
       ball.shape.radius = (*lamp)->radius;
       ball.to_world[0][3] = Vec4((*lamp)->source->position(), 1.0F);
-      ball.visible_to_camera = false;
+      ball.seen_by = (kinds_of(desc.visible) & RayKind::scattered) | RayKind::shadow;
       ball.blocks_light = false;
       ball.changes_between_frames = (*lamp)->changes_between_frames;
       placements.push_back(std::move(ball));
@@ -227,35 +232,79 @@ class SceneBuilder {
     } else {
       emission.radiance *= amount;
     }
+    auto link = link_of(emit.links, object.placement.seen_by);
+    if (!link) return link.error();
     const std::vector<LightPtr> lights = make_area_lights(*scene_->world, parts, emission, power);
     for (size_t i = 0; i < parts.size(); ++i) {
       scene_->objects[parts[i]].light =
-          add_light(lights[i], scene_->objects[parts[i]].name, emit.light_group);
+          add_light(lights[i], scene_->objects[parts[i]].name, emit.light_group, *link);
     }
     return {};
   }
 
-  uint32_t add_light(LightPtr light, const std::string& name, const std::string& group) {
+  /// How a light is linked whose surface, or whose light, is seen by rays of `seen_by`.
+  Result<LightLink> link_of(const LightLinkDesc& desc, RayKind seen_by) {
+    const auto receivers = lists_->number_of(desc.light_linking);
+    if (!receivers) return receivers.error();
+    const auto blockers = lists_->number_of(desc.shadow_linking);
+    if (!blockers) return blockers.error();
+    scene_->tells_rays_apart |= (seen_by & RayKind::scattered) != RayKind::scattered;
+    scene_->shadows_differ |= *blockers != 0;
+    return LightLink{seen_by, *receivers, *blockers};
+  }
+
+  /// Notes whether rays must be told apart for a surface that is seen by `seen_by`.
+  void note_rays(RayKind seen_by) {
+    const RayKind scattered = seen_by & RayKind::scattered;
+    scene_->tells_rays_apart |= scattered != RayKind::scattered;
+    const RayKind as_shadow = meet(seen_by, RayKind::shadow) ? RayKind::scattered : RayKind::none;
+    scene_->shadows_differ |= scattered != as_shadow;
+  }
+
+  /// Once all lights are there: the lists that each object is in.
+  void link_objects() {
+    for (size_t i = 0; i < scene_->objects.size(); ++i) {
+      SceneObject& object = scene_->objects[i];
+      object.in_lists = i < lists_->objects() ? lists_->of(i) : lists_->of_rest();
+    }
+    scene_->rest_in_lists = lists_->of_rest();
+    for (size_t i = 0; i < scene_->lights.size(); ++i) {
+      if (scene_->lights[i]->is_delta()) continue;
+      scene_->blocker_lists |= ListBits{1} << scene_->light_links[i].blockers;
+    }
+  }
+
+  std::vector<uint8_t> receivers() const {
+    std::vector<uint8_t> receivers;
+    for (const LightLink& link : scene_->light_links) receivers.push_back(link.receivers);
+    return receivers;
+  }
+
+  uint32_t add_light(LightPtr light, const std::string& name, const std::string& group,
+                     const LightLink& link) {
     const auto index = static_cast<uint32_t>(scene_->lights.size());
     if (light->is_infinite()) scene_->infinite_lights.push_back(index);
     scene_->lights.push_back(std::move(light));
     scene_->light_names.push_back(name);
     scene_->light_groups.push_back(group);
+    scene_->light_links.push_back(link);
     return index;
   }
 
   Status add_lights() {
     const LightSetting setting = this->setting();
     for (const LightDesc& desc : job_.lights) {
+      const auto link = link_of(desc.links, kinds_of(desc.visible));
+      if (!link) return link.error();
       if (const auto lamp = lamps_.find(&desc); lamp != lamps_.end()) {
         const auto& [source, object] = lamp->second;
-        scene_->objects[object].light =
-            add_light(make_ball_light(*scene_->world, object, source), desc.name, desc.light_group);
+        scene_->objects[object].light = add_light(make_ball_light(*scene_->world, object, source),
+                                                  desc.name, desc.light_group, *link);
         continue;
       }
       auto light = make_light(desc, setting, cache_);
       if (!light) return Error{Diagnostic{desc.where, light.error().message}.to_string()};
-      add_light(*light, desc.name, desc.light_group);
+      add_light(*light, desc.name, desc.light_group, *link);
     }
     return {};
   }
@@ -266,8 +315,10 @@ class SceneBuilder {
     const EnvironmentDesc& sky = *job_.environment;
     auto lights = make_environment(sky, setting(), cache_);
     if (!lights) return Error{Diagnostic{sky.where, lights.error().message}.to_string()};
-    for (auto& [name, light] : *lights) add_light(std::move(light), name, sky.light_group);
-    scene_->environment_visible = sky.visible_to_camera;
+    const auto link = link_of(sky.links, kinds_of(sky.visible));
+    if (!link) return link.error();
+    for (auto& [name, light] : *lights) add_light(std::move(light), name, sky.light_group, *link);
+    scene_->environment_visible = sky.visible.camera;
     return {};
   }
 
@@ -356,6 +407,7 @@ class SceneBuilder {
     uint32_t object;  ///< index of its ball's placement
   };
   std::map<const LightDesc*, PlacedLamp> lamps_;
+  std::optional<LinkingLists> lists_;
   std::unique_ptr<Scene> scene_ = std::make_unique<Scene>();
 };
 

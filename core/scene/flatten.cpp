@@ -41,12 +41,12 @@ class Flattener {
   }
 
   Status add_all(const std::vector<ObjectDesc>& objects, const std::string& prefix,
-                 const std::string& material, bool visible) {
+                 const std::string& material) {
     if (chain_.size() > kMaxDepth) return Error{"group '" + prefix + "' contains itself"};
     for (const ObjectDesc& object : objects) {
       chain_.push_back(&object);
       if (!object.overrides.empty()) overridden_[&object].clear();
-      auto added = add(object, prefix + object.name, material, visible);
+      auto added = add(object, prefix + object.name, material);
       chain_.pop_back();
       if (!added) return added;
       for (const auto& [from, to] : object.overrides) {
@@ -63,20 +63,18 @@ class Flattener {
  private:
   static constexpr size_t kMaxDepth = 64;
 
-  Status add(const ObjectDesc& object, const std::string& name, const std::string& inherited,
-             bool parent_visible) {
+  Status add(const ObjectDesc& object, const std::string& name, const std::string& inherited) {
     const std::string& material = object.material.empty() ? inherited : object.material;
-    const bool visible = parent_visible && object.visible_to_camera;
-    if (object.shape == "group") return add_all(object.children, name + "/", material, visible);
+    if (object.shape == "group") return add_all(object.children, name + "/", material);
     if (object.shape == "instance") {
       const auto group = groups_.find(object.instance_of);
       if (group == groups_.end()) {
         return at(object, Error{"there is no group '" + object.instance_of + "'"});
       }
       if (object.places.empty()) {
-        return add_all(group->second->objects, name + "/", material, visible);
+        return add_all(group->second->objects, name + "/", material);
       }
-      return add_copies(object, *group->second, name, material, visible);
+      return add_copies(object, *group->second, name, material);
     }
     if (flat_.size() >= kMaxPlacements) {
       return Error{"groups and instances make more than " + std::to_string(kMaxPlacements) +
@@ -108,19 +106,20 @@ class Flattener {
     }
     flat.placement.shape = *shape;
     flat.placement.instancer = instancer_;
-    flat.placement.visible_to_camera = visible;
+    flat.placement.seen_by = seen_by();
+    flat.holdout = is_holdout();
     flat.placement.changes_between_frames = chain_is_animated() || size_changes(object) ||
                                             displacement_changes(job_, object) ||
                                             is_file_sequence(object.mesh);
     flat.placement.to_world = std::move(to_world);
     flat_.push_back(std::move(flat));
-    if (object.shape == "cylinder" && object.caps) add_caps(object, name, look, visible);
+    if (object.shape == "cylinder" && object.caps) add_caps(object, name, look);
     return {};
   }
 
   /// Copies of a group at the places of a file.
   Status add_copies(const ObjectDesc& object, const GroupDesc& group, const std::string& name,
-                    const std::string& material, bool visible) {
+                    const std::string& material) {
     const auto refuse = [&](const Error& error) {
       return at(object, error.in("object '" + name + "'"));
     };
@@ -138,7 +137,7 @@ class Flattener {
     instancer_ = std::move(instancer);
     inside_ = chain_.size();
     const size_t first = flat_.size();
-    const Status added = add_all(group.objects, name + "/", material, visible);
+    const Status added = add_all(group.objects, name + "/", material);
     instancer_ = nullptr;
     inside_ = 0;
     if (!added) return added;
@@ -204,8 +203,7 @@ class Flattener {
   }
 
   /// The two discs that close a cylinder.
-  void add_caps(const ObjectDesc& object, const std::string& name, const std::string& material,
-                bool visible) {
+  void add_caps(const ObjectDesc& object, const std::string& name, const std::string& material) {
     const size_t body = flat_.size() - 1;
     for (const bool top : {false, true}) {
       FlatObject cap;
@@ -216,7 +214,8 @@ class Flattener {
       cap.emit = emission_of(object, material);
       cap.placement.shape.kind = Shape::Kind::disk;
       cap.placement.shape.radius = object.radius.at(looks_.time());
-      cap.placement.visible_to_camera = visible;
+      cap.placement.seen_by = seen_by();
+      cap.holdout = is_holdout();
       cap.placement.instancer = instancer_;
       cap.placement.changes_between_frames = chain_is_animated() || size_changes(object);
       Mat4 place(1.0F);
@@ -230,6 +229,18 @@ class Flattener {
           job_, frame_, [&](const JobTime& time) { return chain_matrix(time) * place; });
       flat_.push_back(std::move(cap));
     }
+  }
+
+  /// The rays that see the object and every group around it.
+  RayKind seen_by() const {
+    RayKind kinds = RayKind::all;
+    for (const ObjectDesc* object : chain_) kinds = kinds & kinds_of(object->visible);
+    return kinds;
+  }
+
+  bool is_holdout() const {
+    return std::any_of(chain_.begin(), chain_.end(),
+                       [](const ObjectDesc* object) { return object->holdout; });
   }
 
   /// Whether the object or a group around it is placed by keys or expressions.
@@ -268,6 +279,20 @@ class Flattener {
 
 }  // namespace
 
+RayKind kinds_of(const VisibilityDesc& visible) {
+  RayKind kinds = RayKind::none;
+  const auto add = [&](bool seen, RayKind kind) {
+    if (seen) kinds = kinds | kind;
+  };
+  add(visible.camera, RayKind::camera);
+  add(visible.diffuse, RayKind::diffuse);
+  add(visible.glossy, RayKind::glossy);
+  add(visible.transmission, RayKind::transmission);
+  add(visible.volume, RayKind::volume);
+  add(visible.shadow, RayKind::shadow);
+  return kinds;
+}
+
 Error at_object(const FlatObject& object, const Error& error) {
   const Error named = error.in("object '" + object.name + "'");
   return {Diagnostic{object.desc->where, named.message}.to_string()};
@@ -276,7 +301,7 @@ Error at_object(const FlatObject& object, const Error& error) {
 Result<std::vector<FlatObject>> flatten_objects(const Job& job, int32_t frame, SceneCache& cache,
                                                 Displacements displacements) {
   Flattener flattener(job, frame, cache, displacements);
-  if (auto done = flattener.add_all(job.objects, "", "", true); !done) return done.error();
+  if (auto done = flattener.add_all(job.objects, "", ""); !done) return done.error();
   return flattener.take();
 }
 

@@ -20,9 +20,13 @@ struct FlatObject {
   std::string material;  ///< name; inherited from the enclosing group where the object has none
   size_t body = 0;       ///< index of the first of all parts of its closed surface
   std::optional<EmitDesc> emit;
+  bool holdout = false;
   std::string notice;   ///< what of its shape is probably not meant
   Placement placement;  ///< in metres
 };
+
+/// The rays that see it.
+RayKind kinds_of(const VisibilityDesc& visible);
 
 /// `error` with the name of `object`, and where in the job it stands.
 Error at_object(const FlatObject& object, const Error& error);

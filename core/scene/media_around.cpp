@@ -20,7 +20,7 @@ MediumStack media_around(const Scene& scene, const Vec3& point, float time) {
   Ray ray{point, kDirection, kInfinity, time};
   SurfacePoint surface;
   for (int i = 0; i < kMostSurfaces; ++i) {
-    if (!scene.world->nearest(ray, RayKind::other, surface)) break;
+    if (!scene.world->nearest(ray, RayKind::all, surface)) break;
     const Body* body = scene.objects[surface.object].body;
     if (body != nullptr && std::find(met.begin(), met.end(), body) == met.end()) {
       met.push_back(body);

@@ -19,6 +19,7 @@ struct Body {
   /// Where bodies overlap, the one of highest rank says what is there. No two are equal.
   uint32_t rank = 0;
   bool may_be_hidden = false;  ///< parts of its surface, by bodies of higher rank
+  uint32_t object = 0;         ///< index of the placement whose surface encloses it
 
   bool refracts() const { return index > 0.0F; }
 };
@@ -87,6 +88,16 @@ class MediumStack {
     for (uint32_t i = size_ - 1; i > at; --i) inside_[i] = inside_[i - 1];
     inside_[at] = &body;
   }
+
+  /// Forgets the bodies that are not there for what follows, those for which `is_there` is false.
+  template <class IsThere>
+  void keep(const IsThere& is_there) {
+    const auto end = inside_.begin() + size_;
+    const auto last =
+        std::remove_if(inside_.begin(), end, [&](const Body* body) { return !is_there(*body); });
+    size_ = static_cast<uint32_t>(last - inside_.begin());
+  }
+  void keep_no_atmosphere() { atmosphere_ = nullptr; }
 
   void leave(const Body& body) {
     const auto end = inside_.begin() + size_;

@@ -17,7 +17,7 @@ MODULES = {
     "materials": ["materials.bump", "materials.normal_map", "materials.subsurface.body", "materials"],
     "media": ["media.density.noise", "media.density.shell", "media.density", "media.emission", "media"],
     "objects": ["objects.emit", "objects.mesh.displacement", "objects", "groups"],
-    "lights": ["lights", "environment.sky", "environment"],
+    "lights": ["linking", "lights", "environment.sky", "environment"],
     "outputs": ["outputs"],
     "job_keys": ["job"],
 }

@@ -78,7 +78,7 @@ void make_rays(Setup& s) {
     const Vec3 from = b.center() + size * random.direction();
     const Vec3 to = b.center() + 0.5F * b.size() * random.direction() * random.next();
     const Ray ray{from, glm::normalize(to - from)};
-    const auto hit = s.world->intersect(ray, RayKind::other);
+    const auto hit = s.world->intersect(ray, RayKind::diffuse);
     if (!hit) continue;
     const SurfacePoint p = s.world->surface(ray, *hit);
     const Vec3 n = glm::dot(p.ng, ray.direction) < 0.0F ? p.ng : -p.ng;
@@ -175,13 +175,13 @@ void bare_any(benchmark::State& state, std::vector<Ray> Setup::*rays) {
 
 void world_nearest(benchmark::State& state, std::vector<Ray> Setup::*rays) {
   each_ray(state, rays, [](Setup& s, const Ray& ray) {
-    benchmark::DoNotOptimize(s.world->intersect(ray, RayKind::other));
+    benchmark::DoNotOptimize(s.world->intersect(ray, RayKind::diffuse));
   });
 }
 
 void world_surface(benchmark::State& state, std::vector<Ray> Setup::*rays) {
   each_ray(state, rays, [](Setup& s, const Ray& ray) {
-    const auto hit = s.world->intersect(ray, RayKind::other);
+    const auto hit = s.world->intersect(ray, RayKind::diffuse);
     if (hit) benchmark::DoNotOptimize(s.world->surface(ray, *hit));
   });
 }
@@ -194,7 +194,7 @@ void world_any(benchmark::State& state, std::vector<Ray> Setup::*rays) {
 /// Our own hierarchy beside bare Embree.
 void tree_nearest(benchmark::State& state, std::vector<Ray> Setup::*rays) {
   each_ray(state, rays, [](Setup& s, const Ray& ray) {
-    benchmark::DoNotOptimize(s.tree->nearest(ray, RayKind::other, kNearest));
+    benchmark::DoNotOptimize(s.tree->nearest(ray, RayKind::diffuse, kNearest));
   });
 }
 
@@ -212,7 +212,7 @@ void world_of(benchmark::State& state, std::vector<Placement> placements) {
   const FpMode mode;
   for (auto _ : state) {
     for (const Ray& ray : s->bounces) {
-      benchmark::DoNotOptimize(world->intersect(ray, RayKind::other));
+      benchmark::DoNotOptimize(world->intersect(ray, RayKind::diffuse));
     }
   }
   state.SetItemsProcessed(state.iterations() * static_cast<int64_t>(s->bounces.size()));

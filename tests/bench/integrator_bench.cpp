@@ -216,7 +216,7 @@ size_t robust_occlusion() { return trace_occlusion(setup().robust); }
 size_t world_closest() {
   Setup& s = setup();
   for (const Ray& ray : s.closest)
-    benchmark::DoNotOptimize(s.scene->world->intersect(ray, RayKind::other));
+    benchmark::DoNotOptimize(s.scene->world->intersect(ray, RayKind::diffuse));
   return s.closest.size();
 }
 
@@ -224,7 +224,7 @@ size_t world_nearest() {
   Setup& s = setup();
   SurfacePoint point;
   for (const Ray& ray : s.closest) {
-    benchmark::DoNotOptimize(s.scene->world->nearest(ray, RayKind::other, point));
+    benchmark::DoNotOptimize(s.scene->world->nearest(ray, RayKind::diffuse, point));
     benchmark::DoNotOptimize(point);
   }
   return s.closest.size();

@@ -254,6 +254,8 @@ Trial trial_of(const JobKey& id) {
     return {
         {{"at", "[1, 3, 2]"}, {"look_at", "[0, 0.5, 0]"}}, "", key == "image" ? "wood.png" : ""};
   }
+  if (section == "lights" && key == "shadow_linking")
+    return {{{"at", "[0.3, 2, 0.7]"}, {"power", "90"}}};
   if (section == "environment" && key == "rotate_y") return {{{"image", "sky.hdr"}}};
   return {};
 }

@@ -84,7 +84,7 @@ class PathDensities {
     const float far = glm::length(at(0).position - at(1).position);
     core::Ray ray{at(1).position, to_light_};
     for (float gone = 0.0F; gone < 1.01F * far;) {
-      const auto hit = scene_.world->intersect(ray, core::RayKind::other);
+      const auto hit = scene_.world->intersect(ray, core::RayKind::diffuse);
       if (!hit) break;
       const core::SurfacePoint point = scene_.world->surface(ray, *hit);
       gone += point.t;

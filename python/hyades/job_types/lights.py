@@ -12,6 +12,17 @@ from .transforms import Step
 
 
 @dataclass(kw_only=True, eq=False, repr=False)
+class Linking(Described):
+    """Linking."""
+
+    SECTIONS: ClassVar[tuple[str, ...]] = ("linking",)
+    include: Sequence[str] | None = key("texts")
+    """Those that are lit, or cast shadows. Range: objects, and what is in them. Default: all."""
+    exclude: Sequence[str] | None = key("texts")
+    """Those that are not. Range: objects, and what is in them. Default: none."""
+
+
+@dataclass(kw_only=True, eq=False, repr=False)
 class Light(Described):
     """Lights."""
 
@@ -20,6 +31,18 @@ class Light(Described):
     """Copies that one's keys. Range: another light. Default: none."""
     transform: Sequence[Step] | None = key("list of steps")
     """Moves and turns it, after its place and direction; see Transform. Default: none."""
+    visible_to_diffuse: bool = key("switch", True)
+    """Whether it lights the diffuse part of surfaces; see Which rays see what."""
+    visible_to_glossy: bool = key("switch", True)
+    """Whether it lights the rest of them: highlights, and reflections of its ball."""
+    visible_to_transmission: bool = key("switch", True)
+    """Whether it lights surfaces from behind, and is seen through them."""
+    visible_to_volume: bool = key("switch", True)
+    """Whether it lights media."""
+    light_linking: Linking | None = key("map")
+    """The objects that it lights; see Linking. Default: none."""
+    shadow_linking: Linking | None = key("map")
+    """The objects that cast shadows in its light. Default: none."""
 
 
 @dataclass(kw_only=True, eq=False, repr=False)
@@ -171,6 +194,18 @@ class Environment(Described):
     """Makes it brighter or darker. Range: >= 0."""
     visible_to_camera: bool = key("switch", True)
     """Whether the camera sees it directly; where not, the picture is transparent."""
+    visible_to_diffuse: bool = key("switch", True)
+    """Whether it lights the diffuse part of surfaces; see Which rays see what."""
+    visible_to_glossy: bool = key("switch", True)
+    """Whether the rest of them reflects it."""
+    visible_to_transmission: bool = key("switch", True)
+    """Whether it is seen through surfaces."""
+    visible_to_volume: bool = key("switch", True)
+    """Whether it lights media."""
     light_group: str | None = key("text")
     """Which light group its light belongs to; see Layers. Range: letters, digits, _ and -. Default:
     none."""
+    light_linking: Linking | None = key("map")
+    """The objects that it lights; see Linking. Default: none."""
+    shadow_linking: Linking | None = key("map")
+    """The objects that cast shadows in its light. Default: none."""

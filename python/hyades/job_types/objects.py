@@ -10,6 +10,7 @@ from ..described import Described, key
 from ..values import ColorInput, File, FileOrSequence, GroupName, MaterialName, MediumName, Number, TextureInput, Vector
 from .transforms import Step
 from .materials import Material
+from .lights import Linking
 
 
 @dataclass(kw_only=True, eq=False, repr=False)
@@ -34,6 +35,10 @@ class Emit(Described):
     light_group: str | None = key("text")
     """Which light group its light belongs to; see Layers. Range: letters, digits, _ and -. Default:
     none."""
+    light_linking: Linking | None = key("map")
+    """The objects that it lights; see Linking. Default: none."""
+    shadow_linking: Linking | None = key("map")
+    """The objects that cast shadows in its light. Default: none."""
 
 
 @dataclass(kw_only=True, eq=False, repr=False)
@@ -82,6 +87,20 @@ class Object(Described):
     """From top to bottom; see Transform. Default: none."""
     visible_to_camera: bool = key("switch", True)
     """Whether the camera sees it directly; mirrors, shadows and light stay."""
+    visible_to_diffuse: bool = key("switch", True)
+    """Whether rays meet it that the diffuse part of a surface reflected; see Which rays see
+    what."""
+    visible_to_glossy: bool = key("switch", True)
+    """Whether rays meet it that the rest of a surface reflected: mirrors and highlights."""
+    visible_to_transmission: bool = key("switch", True)
+    """Whether rays meet it that went through a surface: glass, leaves."""
+    visible_to_volume: bool = key("switch", True)
+    """Whether rays meet it that were scattered in a medium."""
+    visible_to_shadow: bool = key("switch", True)
+    """Whether it casts shadows."""
+    holdout: bool = key("switch", False)
+    """Where the camera sees it, or what is in it, the picture is black and transparent: a hole for
+    what another picture shows. Light, mirrors and shadows know nothing of it."""
 
 
 @dataclass(kw_only=True, eq=False, repr=False)

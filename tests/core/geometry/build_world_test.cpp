@@ -132,7 +132,7 @@ TEST(BuildWorld, ChangedStillGeometryIsBuiltAgain) {
   const auto second = build_world(placements, cache, test::tested_class());
   ASSERT_TRUE(second);
   EXPECT_EQ(digest(**second, 2000, 2), digest(*test::build(placements), 2000, 2));
-  box.visible_to_camera = false;
+  box.seen_by = RayKind::scattered | RayKind::shadow;
   const auto third = build_world(placements, cache, test::tested_class());
   ASSERT_TRUE(third);
   EXPECT_EQ(digest(**third, 2000, 2), digest(*test::build(placements), 2000, 2));

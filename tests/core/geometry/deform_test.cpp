@@ -66,9 +66,9 @@ void expect_moment(const World& world, const Placement& placement, float time, c
     const Ray ray = some_ray(random, time);
     SurfacePoint a;
     SurfacePoint b;
-    const bool found = world.nearest(ray, RayKind::other, a);
+    const bool found = world.nearest(ray, RayKind::diffuse, a);
     ASSERT_EQ(world.occluded(ray), found);
-    if (found != expected->nearest(ray, RayKind::other, b)) continue;  // past an edge
+    if (found != expected->nearest(ray, RayKind::diffuse, b)) continue;  // past an edge
     if (!found || a.primitive != b.primitive) continue;
     ++met;
     ASSERT_NEAR(a.t, b.t, tolerance);
@@ -141,8 +141,8 @@ TEST(Deforming, AMeshThatIsCarriedAlongIsAMeshThatMoves) {
     ray.direction = glm::normalize(0.9F * random.direction() + way * ray.time - ray.origin);
     SurfacePoint p;
     SurfacePoint q;
-    const bool found = a->nearest(ray, RayKind::other, p);
-    if (found != b->nearest(ray, RayKind::other, q) || !found) continue;
+    const bool found = a->nearest(ray, RayKind::diffuse, p);
+    if (found != b->nearest(ray, RayKind::diffuse, q) || !found) continue;
     ++met;
     ASSERT_NEAR(p.t, q.t, 1e-4F);
     ASSERT_GT(glm::dot(p.ns, q.ns), 0.9999F);
@@ -167,7 +167,7 @@ TEST(Deforming, RaysLeaveTheirSurface) {
     for (int i = 0; i < 20'000; ++i) {
       const Ray ray = some_ray(random, random.uniform());
       SurfacePoint on;
-      if (!world->nearest(ray, RayKind::other, on)) continue;
+      if (!world->nearest(ray, RayKind::diffuse, on)) continue;
       ++met;
       Vec3 out = random.direction();
       if (glm::dot(out, on.ng) < 0.0F) out = -out;
@@ -208,13 +208,13 @@ TEST(Deforming, TrianglesThatOpenBetweenTwoFlatOnesAreMet) {
   p.shape.next = b;
   const auto world = test::build({p});
   Ray ray{{0.3F, 0.3F, 1.0F}, {0.0F, 0.0F, -1.0F}, kInfinity, 0.5F};
-  EXPECT_TRUE(world->intersect(ray, RayKind::other));
+  EXPECT_TRUE(world->intersect(ray, RayKind::diffuse));
   ray.time = 0.0F;
-  EXPECT_FALSE(world->intersect(ray, RayKind::other));
+  EXPECT_FALSE(world->intersect(ray, RayKind::diffuse));
   b->positions[2] = {0, 0, 0};
   const auto flat = test::build({p});
   ray.time = 0.5F;
-  EXPECT_FALSE(flat->intersect(ray, RayKind::other));
+  EXPECT_FALSE(flat->intersect(ray, RayKind::diffuse));
 }
 
 TEST(Deforming, BoundsHoldAllMoments) {

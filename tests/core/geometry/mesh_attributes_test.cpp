@@ -147,7 +147,7 @@ std::vector<SurfacePoint> some_points(const std::shared_ptr<TriangleMesh>& mesh,
     ray.origin = 6.0F * random.direction();
     ray.direction = glm::normalize(0.5F * random.direction() - ray.origin);
     SurfacePoint p;
-    if (world->nearest(ray, RayKind::other, p)) points.push_back(p);
+    if (world->nearest(ray, RayKind::diffuse, p)) points.push_back(p);
   }
   EXPECT_GT(points.size(), 100U);
   return points;

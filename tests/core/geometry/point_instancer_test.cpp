@@ -164,7 +164,7 @@ TEST(PointInstancer, RaysLeaveTheirSurface) {
     ray.origin = middle + 200.0F * random.direction();
     ray.direction = glm::normalize(middle + 12.0F * random.direction() - ray.origin);
     SurfacePoint on;
-    if (!world->nearest(ray, RayKind::other, on)) continue;
+    if (!world->nearest(ray, RayKind::diffuse, on)) continue;
     ++met;
     Vec3 out = random.direction();
     if (glm::dot(out, on.ng) < 0.0F) out = -out;
@@ -193,7 +193,7 @@ TEST(PointInstancer, RaysLeaveWhatIsFarFromTheMiddleOfItsCopy) {
     ray.origin = middle + 5.0F * random.direction();
     ray.direction = glm::normalize(middle + 0.5F * random.direction() - ray.origin);
     SurfacePoint on;
-    if (!world->nearest(ray, RayKind::other, on)) continue;
+    if (!world->nearest(ray, RayKind::diffuse, on)) continue;
     ++met;
     Vec3 out = random.direction();
     if (glm::dot(out, on.ng) < 0.0F) out = -out;
@@ -205,13 +205,13 @@ TEST(PointInstancer, RaysLeaveWhatIsFarFromTheMiddleOfItsCopy) {
 TEST(PointInstancer, SeesTheMasksOfItsMembers) {
   const FpMode mode;
   std::vector<Placement> all = {test::place(test::make_ball(2))};
-  all[0].visible_to_camera = false;
+  all[0].seen_by = RayKind::scattered | RayKind::shadow;
   all[0].blocks_light = false;
   const auto world =
       test::build(in_instancer(all, instancer_of({Mat4(1.0F), test::translation({5, 0, 0})})));
   const Ray ray{{5.0F, 0.1F, 5.0F}, {0.0F, 0.0F, -1.0F}, kInfinity, 0.0F};
   EXPECT_FALSE(world->intersect(ray, RayKind::camera));
-  EXPECT_TRUE(world->intersect(ray, RayKind::other));
+  EXPECT_TRUE(world->intersect(ray, RayKind::diffuse));
   EXPECT_FALSE(world->occluded(ray));
 }
 
@@ -238,7 +238,7 @@ TEST(PointInstancer, OnesThatDifferAreNotShared) {
     EXPECT_TRUE(world);
     SurfacePoint p;
     const Ray ray{{0.0F, 20.0F, 0.0F}, {0.0F, -1.0F, 0.0F}, kInfinity, 0.0F};
-    return (*world)->nearest(ray, RayKind::other, p) ? p.position.y : -100.0F;
+    return (*world)->nearest(ray, RayKind::diffuse, p) ? p.position.y : -100.0F;
   };
   const auto ball = test::place(Shape::Kind::sphere, 1.0F, 1.0F);
   auto large = ball;

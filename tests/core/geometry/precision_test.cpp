@@ -92,7 +92,7 @@ class Leaks {
   void aim_from(const World& world, const Vec3& from, float time, Random& random) {
     for (const Target target : {Target::face, Target::edge, Target::vertex}) {
       const Ray ray = aim(world, from, time, target, random);
-      const bool escaped = !world.intersect(ray, RayKind::other) || !world.occluded(ray);
+      const bool escaped = !world.intersect(ray, RayKind::diffuse) || !world.occluded(ray);
       if (escaped) ++(target == Target::vertex ? at_vertices_ : elsewhere_);
     }
     ++tried_;
@@ -148,10 +148,10 @@ TEST(Precision, TheBunnyDoesNotLeak) {
       // Half way between the first two surfaces on a line through it lies the inside.
       const Vec3 out = b.center() + glm::length(b.size()) * random.direction();
       const Ray in{out, glm::normalize(b.center() - out)};
-      const auto first = world->intersect(in, RayKind::other);
+      const auto first = world->intersect(in, RayKind::diffuse);
       ASSERT_TRUE(first);
       const auto second =
-          world->intersect(spawn_ray(world->surface(in, *first), in.direction), RayKind::other);
+          world->intersect(spawn_ray(world->surface(in, *first), in.direction), RayKind::diffuse);
       ASSERT_TRUE(second);
       const Vec3 from = in.at(first->t + 0.5F * second->t);
       for (int k = 0; k < 700; ++k) leaks.aim_from(*world, from, 0.0F, random);
@@ -166,7 +166,7 @@ std::optional<SurfacePoint> random_point(const World& world, Random& random) {
   const Vec3 center = transform_point(world.transform_at(0, time), Vec3(0.0F));
   const Vec3 from = center + 2.0F * glm::length(world.bounds().size()) * random.direction();
   const Ray ray = aim(world, from, time, Target::face, random);
-  const auto hit = world.intersect(ray, RayKind::other);
+  const auto hit = world.intersect(ray, RayKind::diffuse);
   if (!hit) return std::nullopt;
   return world.surface(ray, *hit);
 }
@@ -192,9 +192,9 @@ void expect_clean(const std::shared_ptr<const TriangleMesh>& mesh, size_t count,
       ++tried;
       const Vec3 d = outward(*p, random);
       const Ray out = spawn_ray(*p, d);
-      if (world.intersect(out, RayKind::other) || world.occluded(out)) ++hit_itself;
+      if (world.intersect(out, RayKind::diffuse) || world.occluded(out)) ++hit_itself;
       const Ray in = spawn_ray(*p, -d);
-      const auto far = world.intersect(in, RayKind::other);
+      const auto far = world.intersect(in, RayKind::diffuse);
       if (far && far->primitive == p->primitive) ++hit_itself;
       if (!far) ++lost;
     }
@@ -217,7 +217,7 @@ TEST(Precision, TheBunnyDoesNotMeetItself) {
       if (!p) continue;
       const Vec3 d = outward(*p, random);
       for (const float side : {1.0F, -1.0F}) {
-        const auto hit = world.intersect(spawn_ray(*p, side * d), RayKind::other);
+        const auto hit = world.intersect(spawn_ray(*p, side * d), RayKind::diffuse);
         EXPECT_FALSE(hit && hit->primitive == p->primitive);
       }
     }
@@ -238,15 +238,15 @@ TEST(Precision, QuadricsDoNotMeetThemselves) {
           const Vec3 center(m[3]);
           const Vec3 from = center + 4.0F * scale * random.direction();
           const Ray ray{from, glm::normalize(center + 0.7F * scale * random.direction() - from)};
-          const auto hit = world->intersect(ray, RayKind::other);
+          const auto hit = world->intersect(ray, RayKind::diffuse);
           if (!hit) continue;
           ++tried;
           const SurfacePoint p = world->surface(ray, *hit);
           const Vec3 d = outward(p, random);
           const Ray out = spawn_ray(p, d);
-          EXPECT_FALSE(world->intersect(out, RayKind::other));
+          EXPECT_FALSE(world->intersect(out, RayKind::diffuse));
           EXPECT_FALSE(world->occluded(out));
-          const auto far = world->intersect(spawn_ray(p, -d), RayKind::other);
+          const auto far = world->intersect(spawn_ray(p, -d), RayKind::diffuse);
           if (kind == Shape::Kind::sphere) {
             // The chord into a sphere has length 2 r cos.
             const float cosine = glm::dot(d, p.ng);
@@ -281,7 +281,7 @@ TEST(Precision, ParallelSurfacesVeryNearAreFound) {
       Vec3 d = random.direction();
       if (glm::dot(d, p.ng) < 0.0F) d = -d;
       if (glm::dot(d, p.ng) < 0.1F) d = p.ng;
-      const auto hit = world.intersect(spawn_ray(p, d), RayKind::other);
+      const auto hit = world.intersect(spawn_ray(p, d), RayKind::diffuse);
       ASSERT_TRUE(hit);
       EXPECT_GE(hit->primitive, 2U);
       const SurfacePoint q = world.triangle_point(0, triangle + 2, u, 0.4F, time);
@@ -340,7 +340,7 @@ TEST(Precision, DegenerateTrianglesAreNeverHit) {
       const Vec3 from = 3.0F * random.direction();
       const Vec3 to = mesh->positions[test::pick(random, mesh->positions.size())];
       const Ray ray{from, glm::normalize(to - from)};
-      EXPECT_FALSE(world->intersect(ray, RayKind::other));
+      EXPECT_FALSE(world->intersect(ray, RayKind::diffuse));
       EXPECT_FALSE(world->occluded(ray));
     }
     // Their points are still points: sampling may land there.

@@ -178,8 +178,8 @@ TEST(Surface, NearestIsIntersectAndSurfaceToTheBit) {
         Ray ray{test::in_box(random, b.lower, b.upper), random.direction()};
         ray.time = random.uniform();
         SurfacePoint p;
-        const auto hit = world->intersect(ray, RayKind::other);
-        ASSERT_EQ(world->nearest(ray, RayKind::other, p), hit.has_value());
+        const auto hit = world->intersect(ray, RayKind::diffuse);
+        ASSERT_EQ(world->nearest(ray, RayKind::diffuse, p), hit.has_value());
         if (!hit) continue;
         ++found;
         const SurfacePoint q = world->surface(ray, *hit);

@@ -96,7 +96,7 @@ class Pieces {
   std::optional<Met> nearest(const Ray& ray) const {
     std::optional<Met> best;
     for (size_t i = 0; i < scenes_.size(); ++i) {
-      const auto hit = scenes_[i]->nearest(ray, RayKind::other, kNearest);
+      const auto hit = scenes_[i]->nearest(ray, RayKind::diffuse, kNearest);
       if (!hit) continue;
       const Met met{hit->t, hit->number, firsts_[i] + hit->primitive};
       if (!best || std::tie(met.t, met.primitive) < std::tie(best->t, best->primitive)) best = met;
@@ -229,7 +229,7 @@ std::vector<Placement> one_of_each(Random& random) {
       made.changes_between_frames = i % 4 == 2;
       if (i % 8 == 2) made.to_world.push_back(test::translation({0, 0.3F, 0}) * at);
     }
-    made.visible_to_camera = i % 5 != 0;
+    if (i % 5 == 0) made.seen_by = RayKind::scattered | RayKind::shadow;
     all.push_back(made);
   }
   return all;
@@ -253,7 +253,7 @@ TEST(TreeScene, WhatIsMetDoesNotDependOnWhatElseIsThere) {
     ray.origin = test::in_box(random, Vec3(-4.0F), Vec3(4.0F));
     ray.direction = glm::normalize(2.0F * random.direction() - ray.origin);
     ray.time = random.uniform();
-    for (const RayKind kind : {RayKind::camera, RayKind::other}) {
+    for (const RayKind kind : {RayKind::camera, RayKind::diffuse}) {
       const auto hit = (*all)->intersect(ray, kind);
       std::optional<Hit> nearest;
       bool hidden = false;

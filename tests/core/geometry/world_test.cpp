@@ -82,16 +82,38 @@ TEST(World, SphereIsHitFromOutsideAndInside) {
 
 TEST(World, CameraRaysPassInvisiblePlacements) {
   Placement sphere = quadric_placement(Shape::Kind::sphere, 1.0F);
-  sphere.visible_to_camera = false;
+  sphere.seen_by = RayKind::scattered | RayKind::shadow;
   Placement rectangle = mesh_placement(make_rectangle({2, 2}), Mat4(1.0F));
-  rectangle.visible_to_camera = false;
+  rectangle.seen_by = RayKind::scattered | RayKind::shadow;
   const auto world = world_of({sphere, rectangle});
   const Ray ray{{0, 5, 0}, {0, -1, 0}};
   EXPECT_FALSE(world->intersect(ray, RayKind::camera));
-  const auto hit = world->intersect(ray, RayKind::other);
+  const auto hit = world->intersect(ray, RayKind::diffuse);
   ASSERT_TRUE(hit);
   EXPECT_EQ(hit->object, 0U);
   EXPECT_TRUE(world->occluded(ray));
+}
+
+/// Each kind of ray sees what has its bit, and sets of kinds what has one of theirs; instances too.
+TEST(World, EachKindOfRayMeetsItsOwn) {
+  const RayKind kinds[] = {RayKind::camera,       RayKind::diffuse, RayKind::glossy,
+                           RayKind::transmission, RayKind::volume,  RayKind::shadow};
+  const Ray ray{{0.1F, 5, 0.2F}, {0, -1, 0}};
+  for (const RayKind hidden_from : kinds) {
+    for (const bool mesh : {false, true}) {
+      Placement p = mesh ? mesh_placement(make_rectangle({2, 2}))
+                         : quadric_placement(Shape::Kind::sphere, 1.0F);
+      p.seen_by = RayKind::none;
+      for (const RayKind kind : kinds) {
+        if (kind != hidden_from) p.seen_by = p.seen_by | kind;
+      }
+      const auto world = world_of({p});
+      for (const RayKind kind : kinds)
+        EXPECT_EQ(world->intersect(ray, kind).has_value(), kind != hidden_from);
+      EXPECT_TRUE(world->intersect(ray, hidden_from | kinds[hidden_from == kinds[0] ? 1 : 0]));
+      EXPECT_EQ(world->occluded(ray), hidden_from != RayKind::shadow);
+    }
+  }
 }
 
 TEST(World, ShadowsPassWhatBlocksNoLight) {
@@ -102,7 +124,7 @@ TEST(World, ShadowsPassWhatBlocksNoLight) {
     const auto world = world_of({p});
     const Ray ray{{0.1F, 5, 0.2F}, {0, -1, 0}};
     EXPECT_TRUE(world->intersect(ray, RayKind::camera));
-    EXPECT_TRUE(world->intersect(ray, RayKind::other));
+    EXPECT_TRUE(world->intersect(ray, RayKind::diffuse));
     EXPECT_FALSE(world->occluded(ray));
   }
 }
@@ -120,7 +142,7 @@ TEST(World, NonFiniteRaysAreCountedAndMiss) {
   bad[6].direction = Vec3(0.0F);
   bad[7].origin.x = 3e38F;
   for (const Ray& ray : bad) {
-    EXPECT_FALSE(world->intersect(ray, RayKind::other));
+    EXPECT_FALSE(world->intersect(ray, RayKind::diffuse));
     EXPECT_FALSE(world->occluded(ray));
   }
   EXPECT_EQ(world->invalid_rays(), 16U);

@@ -203,6 +203,8 @@ const std::map<std::string, Place>& places() {
                                         {{"quaternion", "[0, 0, 0, 1]"}},
                                         "}}]}}"};
     p["lights"] = named("lights", "point", {});
+    p["linking"] = {
+        "lights: {x: {type: point, at: [0, 2, 1], power: 30, light_linking: {", {}, "}}}"};
     for (const char* type : {"point", "spot", "sun"}) {
       p[std::string("lights.") + type] = named("lights", type, {});
     }

@@ -1,5 +1,9 @@
 #include <gtest/gtest.h>
 
+#include <set>
+#include <string>
+#include <vector>
+
 #include "core/base/hash.h"
 #include "core/job/parse.h"
 #include "core/job/render_key.h"
@@ -57,6 +61,19 @@ TEST(RenderKey, KnowsTheExposureOnlyWhereTilesStopAtANoise) {
   EXPECT_NE(key(dark), key(noise + dark));
   EXPECT_NE(key(noise + dark), key(noise + light));
   EXPECT_NE(key(noise + dark), key("sampling: {noise: 0.1, min_samples: 48}\n" + dark));
+}
+
+TEST(RenderKey, TellsNoObjectsFromAllObjects) {
+  const std::vector<std::string> linkings = {"",
+                                             ", light_linking: {include: []}",
+                                             ", light_linking: {include: [a]}",
+                                             ", light_linking: {exclude: [a]}",
+                                             ", shadow_linking: {include: [a]}",
+                                             ", shadow_linking: {include: []}"};
+  std::set<std::string> keys;
+  for (const std::string& linking : linkings)
+    keys.insert(key("objects: {a: {shape: sphere}}\nlights: {l: {type: sun" + linking + "}}\n"));
+  EXPECT_EQ(keys.size(), linkings.size());
 }
 
 TEST(RenderKey, DependsOnTheFrameAndOnMotionWithinTheShutter) {

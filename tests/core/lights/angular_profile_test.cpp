@@ -35,7 +35,7 @@ void expect_rays_find_the_same(const World& world, const Light& light, const Vec
     if (!s) continue;
     test::expect_sound(*s);
     const Ray ray{from, s->direction, kInfinity, 0.0F};
-    const auto hit = world.intersect(ray, RayKind::other);
+    const auto hit = world.intersect(ray, RayKind::diffuse);
     if (!hit) continue;  // the rim
     const SurfacePoint on = world.surface(ray, *hit);
     // Another side may be in the way.

@@ -80,7 +80,7 @@ inline void expect_emission_agrees(const Lamp& lamp, double power, float time = 
     if (i % 10 != 0) continue;
     // Met by a ray from where it shines to; edges may belong to another side.
     const Ray ray{s->on.position + 1e-2F * s->on.ng, -s->on.ng, 2e-2F, time};
-    const auto hit = lamp.world->intersect(ray, RayKind::other);
+    const auto hit = lamp.world->intersect(ray, RayKind::diffuse);
     if (!hit) continue;
     const SurfacePoint met = lamp.world->surface(ray, *hit);
     if (glm::dot(met.ng, s->on.ng) < 0.99F) continue;

@@ -88,7 +88,7 @@ inline std::vector<SurfacePoint> all_along(const World& world, const Vec3& from,
   std::vector<SurfacePoint> points;
   Ray ray{from, direction, kInfinity, time};
   while (points.size() < 16) {
-    const auto hit = world.intersect(ray, RayKind::other);
+    const auto hit = world.intersect(ray, RayKind::diffuse);
     if (!hit) break;
     points.push_back(world.surface(ray, *hit));
     ray = spawn_ray(points.back(), direction);
@@ -131,7 +131,7 @@ inline std::vector<double> chart_shares(
     const Vec3d position = in_world(p);
     const Vec3d normal = glm::normalize(glm::inverseTranspose(linear) * chart.normal(p));
     const Ray ray{Vec3(position + 1e-3 * normal), Vec3(-normal), kInfinity, time};
-    const auto hit = lamp.world->intersect(ray, RayKind::other);
+    const auto hit = lamp.world->intersect(ray, RayKind::diffuse);
     return hit ? per_area(lamp.world->surface(ray, *hit), position, normal) * area : 0.0;
   };
   std::vector<double> shares;

@@ -20,7 +20,7 @@ void expect_cap_follows(const Lamp& lamp, const Vec3& from, const Vec3& axis, do
       },
       [&](const Vec3& e) {
         const Ray ray{from, view.gather(e), kInfinity, 0.0F};
-        const auto hit = lamp.world->intersect(ray, RayKind::other);
+        const auto hit = lamp.world->intersect(ray, RayKind::diffuse);
         if (!hit) return 0.0;
         const SurfacePoint on = lamp.world->surface(ray, *hit);
         return view.density(static_cast<double>(lamp.light->pdf_direct(from, ray.direction, on)));

@@ -122,6 +122,48 @@ TEST(TreeSelector, LeavesOutLampsThatLookAway) {
   EXPECT_TRUE(selector->select({0, -5, 0}, {0, 1, 0}, 0.5F));
 }
 
+/// Of lights that are linked to lists those come that light what is in one, and probabilities add
+/// up to 1 all the same.
+TEST(TreeSelector, ChoosesAmongTheLightsOfAList) {
+  ManyLights many(300);
+  for (int i = 1; i < 10; ++i) {
+    const Rgb color(static_cast<float>(i));
+    many.lights.push_back(make_environment_light(nullptr, 0.0F, color, 5.0F));
+  }
+  std::vector<uint8_t> receivers;
+  for (size_t i = 0; i < many.lights.size(); ++i)
+    receivers.push_back(static_cast<uint8_t>(1 + i % 4));
+  const auto selector = make_tree_selector(many.lights, receivers);
+  test::Random random(41);
+  for (int i = 0; i < 40; ++i) {
+    const Vec3 from = 8.0F * Vec3(random.uniform(), random.uniform(), random.uniform());
+    const Vec3 normal = i % 4 == 0 ? Vec3(0.0F) : Vec3(square_to_uniform_sphere(random.uniform2()));
+    const ListBits lists = i % 2 == 0 ? 0b01000 : 0b10011;
+    double sum = 0.0;
+    for (uint32_t k = 0; k < many.lights.size(); ++k) {
+      const float probability = selector->probability(from, normal, k, lists);
+      sum += static_cast<double>(probability);
+      const bool linked = (lists >> receivers[k] & 1U) != 0;
+      EXPECT_TRUE(linked || probability == 0.0F) << k;
+    }
+    EXPECT_NEAR(sum, 1.0, 1e-9);
+  }
+  EXPECT_FALSE(selector->select({3, 3, 3}, {0, 1, 0}, 0.5F, 0b100000));
+  test::expect_consistent(
+      many.lights.size(),
+      [&](float u) {
+        return selector->select({3, 3, 3}, {0, 1, 0}, u, 0b00111);
+      },
+      [&](uint32_t k) {
+        return selector->probability({3, 3, 3}, {0, 1, 0}, k, 0b00111);
+      },
+      5);
+  const Ray way{{-1, 3, 3}, {1, 0, 0}, kInfinity, 0.0F};
+  test::expect_consistent(
+      many.lights.size(), [&](float u) { return selector->select_along(way, 8.0F, u, 0b00111); },
+      [&](uint32_t k) { return selector->probability_along(way, 8.0F, k, 0b00111); }, 5);
+}
+
 TEST(TreeSelector, PrefersWhatIsNear) {
   std::vector<LightPtr> lights;
   for (int i = 0; i < 1000; ++i)

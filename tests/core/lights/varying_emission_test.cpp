@@ -136,7 +136,7 @@ TEST(VaryingEmission, BrightSpotsMakeLittleNoise) {
     const auto s = even.light->sample_direct(from, 0.0F, random.uniform(), random.uniform2());
     ASSERT_TRUE(s);
     const Ray ray{from, s->direction, kInfinity, 0.0F};
-    const auto hit = varying.world->intersect(ray, RayKind::other);
+    const auto hit = varying.world->intersect(ray, RayKind::diffuse);
     if (!hit) continue;
     const Rgb seen = varying.light->radiance(varying.world->surface(ray, *hit), -s->direction);
     blind.add(static_cast<double>(luminance(seen) * s->direction.y / s->pdf));

@@ -15,11 +15,13 @@ namespace {
 std::string error_of(const std::string& integrator, const std::string& ball) {
   MemoryAssets assets;
   Diagnostics diagnostics;
-  const Job job = parse_job("hyades: 1\nintegrator: " + integrator +
-                                "\nmedia: {fog: {scattering: 1}}\nmaterials: {air: {type: "
-                                "\"null\"}}\nobjects:\n  ball: {shape: sphere, " +
-                                ball + "}\n",
-                            "job.yaml", assets, diagnostics);
+  const Job job =
+      parse_job("hyades: 1\nintegrator: " + integrator +
+                    "\nmedia: {fog: {scattering: 1}}\nmaterials: {air: {type: "
+                    "\"null\"}, glass: {type: dielectric}, skin: {type: "
+                    "dielectric, subsurface: {radius: 0.1}}}\nobjects:\n  ball: {shape: sphere, " +
+                    ball + "}\n",
+                "job.yaml", assets, diagnostics);
   EXPECT_EQ(diagnostics.to_string(), "");
   SceneCache cache(assets);
   const auto scene = build_scene(job, 1, cache);
@@ -37,6 +39,23 @@ TEST(HiddenBodies, WithAnInteriorAreRefusedWhereLightPathsSplat) {
   EXPECT_EQ(error_of("path", body), "none");
   EXPECT_EQ(error_of("bdpt", "material: air, interior: fog"), "none");
   EXPECT_EQ(error_of("bdpt", "visible_to_camera: false"), "none");
+}
+
+TEST(HiddenBodies, AreRefusedWhereRaysWouldNotComeOutOfThem) {
+  const std::string filled =
+      "job.yaml:6:9: object 'ball': it has an interior or a subsurface, which all rays but the "
+      "camera's must see; expected visible_to_diffuse, _glossy, _transmission, _volume and "
+      "_shadow: true";
+  for (const std::string ray : {"diffuse", "glossy", "transmission", "volume", "shadow"}) {
+    const std::string off = ", visible_to_" + ray + ": false";
+    EXPECT_EQ(error_of("path", "material: air, interior: fog" + off), filled);
+    const bool glassy = ray == "transmission";
+    const std::string glass =
+        "job.yaml:6:9: object 'ball': light goes into it and must come out again; expected "
+        "visible_to_transmission: true";
+    EXPECT_EQ(error_of("path", "material: skin" + off), glassy ? glass : filled);
+    EXPECT_EQ(error_of("path", "material: glass" + off), glassy ? glass : "none");
+  }
 }
 
 }  // namespace
