@@ -55,6 +55,8 @@ class Moments:
         if len(self._jobs) > 1:
             self._tell_of_copies(moving_copies.spread(self._jobs, self._names))
             job, complaints = joined_frames.join(self._times, self._of_frames, self._jobs)
+        for where, what in self._names.links.write(job, self._names.objects):
+            self._complain(where, what)
         job.frames = hyades.Frames(range=frames, fps=job.frames.fps, shutter=self._shutter)
         # While the shutter is open nothing else is there than at the frame's own time.
         own = [found for found, frame in zip(self._of_moments, self._of_frames) if frame is not None]
@@ -83,6 +85,7 @@ class Moments:
         self._jobs.append(exported.job)
         self._names.objects |= exported.names.objects
         self._names.materials |= exported.names.materials
+        self._names.links.merge(exported.names.links)
         self._of_moments.append(exported.complaints)
 
     def _complain(self, where: str, what: str) -> None:

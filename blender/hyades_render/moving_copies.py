@@ -58,16 +58,15 @@ def _take_out(jobs: Sequence[hyades.Job], name: str, places: list[Any], moving: 
         called[one] = free_name(f"{name} copy", taken)
         taken.add(called[one])
         names.objects[called[one]] = names.objects.get(name, name)
+        names.links.owners[called[one]] = names.links.owners[name]
     for job, at in zip(jobs, places):
         whole = job.objects.get(name)
         if whole is None:
             continue
         for one in moving:
             if one in at:
-                copy = objects.Instance(instance=whole.instance, transform=[axes.matrix_step(at[one])])
-                if not whole.visible_to_camera:
-                    copy.visible_to_camera = False
-                job.objects[called[one]] = copy
+                step = axes.matrix_step(at[one])
+                job.objects[called[one]] = objects.Instance(instance=whole.instance, transform=[step])
         rest = [one for one in at if one not in moving]
         if rest:
             whole.places = MatrixPlaces(numpy.array([at[one] for one in rest]), rest)

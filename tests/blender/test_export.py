@@ -15,6 +15,7 @@ from told_copies import Copies  # noqa: F401  (tests of this run)
 from told_images import Images  # noqa: F401
 from told_motion import Moving  # noqa: F401
 from told_surfaces import Surfaces, Values  # noqa: F401
+from told_visibility import BlendersLinks, Links, Visibility  # noqa: F401
 from told_volumes import Volumes  # noqa: F401
 
 from hyades_render import animation, complaints, panels, preferences
@@ -74,29 +75,6 @@ class NotThere(ExportTest):
         bpy.data.lights["Light"].cycles.is_portal = True
         self.assertNotIn("Light", self.export()[0].objects)
 
-    def test_who_sees_lamps_and_the_world_is_told(self) -> None:
-        bpy.data.objects["Light"].visible_glossy = False
-        world = self.scene.world.cycles_visibility
-        world.diffuse = world.camera = False
-        job, said = self.export()
-        self.assertIn("light 'Light': it is there for rays of glossy too", said)
-        self.assertIn("world 'World': it is there for rays of diffuse too", said)
-        self.assertFalse(job.environment.visible_to_camera)
-
-    def test_links_of_light_are_told(self) -> None:
-        things = bpy.data.collections.new("Things")
-        for name in ("Light", "Cube"):
-            links = getattr(bpy.data.objects[name], "light_linking", None)
-            if links is None:
-                self.skipTest("since Blender 4.0")
-            links.receiver_collection = links.blocker_collection = things
-        self.assertEqual(self.export()[1], "")  # empty ones link nothing
-        things.objects.link(bpy.data.objects["Cube"])
-        said = self.export()[1]
-        for where in ("light 'Light'", "object 'Cube'"):
-            self.assertIn(f"{where}: its light falls on all things: light linking is left out", said)
-            self.assertIn(f"{where}: all things throw shadows in its light: shadow linking is left out", said)
-
     def test_lamps_near_things_for_their_size_are_told(self) -> None:
         lamp = bpy.data.objects["Light"]  # the cube ends 1 m from the origin
         words = "light 'Light': it is near 'Cube' for its radius"
@@ -112,30 +90,6 @@ class NotThere(ExportTest):
         if hasattr(lamp.data, "use_soft_falloff"):
             lamp.location.z, lamp.data.use_soft_falloff = 2, False
             self.assertEqual(self.export()[1], "")
-
-    def test_holdouts_and_catchers_are_told(self) -> None:
-        cube = bpy.data.objects["Cube"]
-        cube.is_holdout = cube.is_shadow_catcher = True
-        bpy.context.view_layer.layer_collection.children["Collection"].holdout = True
-        _, said = self.export()
-        self.assertIn("object 'Cube': jobs have no holdouts", said)
-        self.assertIn("object 'Cube': jobs have no shadow catchers", said)
-        self.assertIn("collection 'Collection': jobs have no holdouts", said)
-
-    def test_collections_may_be_kept_from_the_camera(self) -> None:
-        thing = bpy.data.objects.new("Thing", bpy.data.objects["Cube"].data)
-        self.collection(thing, copies=2)
-        self.assertEqual([self.export()[0].objects[name].visible_to_camera for name in ("Cube", "Thing")], [True, True])
-        shelf = bpy.data.collections.new("Shelf")
-        self.scene.collection.children.link(shelf)
-        for name in ("Cube", "Copy 1"):
-            bpy.data.objects[name].users_collection[0].objects.unlink(bpy.data.objects[name])
-            shelf.objects.link(bpy.data.objects[name])
-        bpy.context.view_layer.layer_collection.children["Shelf"].indirect_only = True
-        job, said = self.export()
-        things = [body for name, body in job.objects.items() if name.startswith("Thing")]
-        moved = {body.visible_to_camera: (body.transform[0].matrix[3] if body.transform else 0) for body in things}
-        self.assertEqual((moved, job.objects["Cube"].visible_to_camera, said), ({True: 0, False: 2}, False, ""))
 
     def test_exposure_of_light_is_told(self) -> None:
         self.scene.cycles.film_exposure = 2.0

@@ -45,6 +45,9 @@ def export_job(depsgraph: Any, *, settings: Any = None, moves: bool = False, cam
     tell_of_libraries(context)
     add_objects(context)
     add_world(context)
+    if not moves:  # else the names are known when the moments are joined
+        for where, what in context.names.links.write(context.job, context.names.objects):
+            context.complain(where, what)
     tell_of_clipping(context)
     tell_of_drivers(context)
     return Exported(context.job, context.complaints, context.names)

@@ -73,14 +73,12 @@ def _boxes(context: Context) -> Iterator[tuple[list[str], Array, Array]]:
     """What the camera sees: names (of copies one), corners (8, 4) and where each stands (n, 4, 4)."""
     placed: dict[int, tuple[Any, list[str], list[Any]]] = {}  # many objects may have one mesh
     for name, body in context.job.objects.items():
-        if not body.visible_to_camera:
-            continue
-        if isinstance(body, objects.Mesh) and isinstance(body.mesh, MeshData):
+        if isinstance(body, objects.Mesh) and isinstance(body.mesh, MeshData) and body.visible_to_camera:
             _, names, rows = placed.setdefault(id(body.mesh), (body.mesh, [], []))
             names.append(name)
             rows.append(body.transform[0].matrix if body.transform else _UNCHANGED)
         elif isinstance(body, objects.Instance) and isinstance(body.places, MatrixPlaces):
-            for inner in body.instance.objects.values():
+            for inner in filter(lambda one: one.visible_to_camera, body.instance.objects.values()):
                 yield [name], _corners(inner.mesh), body.places.matrices
     for mesh, names, rows in placed.values():
         if len(mesh.positions):

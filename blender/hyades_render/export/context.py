@@ -8,6 +8,8 @@ from typing import Any
 
 import hyades
 
+from .links import Links, Owner
+
 _NOT_ALLOWED = re.compile("[^A-Za-z0-9_. -]")
 
 
@@ -26,10 +28,11 @@ class Complaint:
 
 @dataclass
 class Names:
-    """What things of a job are called in Blender, by their names in the job."""
+    """What things of a job are called in Blender, by their names in the job, and which lamps are linked to them."""
 
     objects: dict[str, str] = field(default_factory=dict)
     materials: dict[str, str] = field(default_factory=dict)
+    links: Links = field(default_factory=Links)
 
 
 class Context:
@@ -42,16 +45,22 @@ class Context:
         self.scene = depsgraph.scene_eval
         self.override = depsgraph.view_layer_eval.material_override  # what all things are made of; None: of their own
         self.settings = settings
+        self.integrator: str = self.setting("integrator", "path")
         self.job = hyades.Job()
         self.names = Names()
         self.complaints: list[Complaint] = []
         self.materials: dict[Any, Any] = {}  # translated ones, by what they depend on
         self.pieces: dict[Any, Any] = {}  # parts of meshes, by the data and materials that several objects have
 
-    def add_object(self, name: str, body: Any) -> None:
+    def add_object(self, name: str, body: Any, owner: Owner) -> None:
         """Adds an object to the job, called like `name`."""
         ours = free_name(name, self.job.objects)
-        self.job.objects[ours], self.names.objects[ours] = body, name
+        self.job.objects[ours], self.names.objects[ours], self.names.links.owners[ours] = body, name, owner
+
+    def add_light(self, name: str, light: Any, owner: Owner) -> None:
+        """Adds a light to the job, called like `name`."""
+        ours = free_name(name, self.job.lights)
+        self.job.lights[ours], self.names.links.lamps[ours] = light, owner
 
     def add_material(self, name: str, material: Any) -> None:
         """Adds a material to the job, called like `name`."""

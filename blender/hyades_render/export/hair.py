@@ -11,15 +11,16 @@ from hyades import objects
 from . import axes
 from .context import Context
 from .materials import strand_material
+from .visibility import Seen, add_seen
 
 
-def add_hair(context: Context, object: Any, matrix: Any, is_seen: bool) -> None:
+def add_hair(context: Context, object: Any, matrix: Any, seen: Seen) -> None:
     """The hair that grows on an object; `matrix` is where it stands in Blender's world."""
     for system in _systems(object):
         strands = _of_particles(object, system, numpy.linalg.inv(axes.array(matrix)))
         if strands is not None:
             slot = _slot(object, system.settings.material - 1)
-            _add(context, f"{object.name}.{system.name}", strands, slot, matrix, is_seen)
+            _add(context, f"{object.name}.{system.name}", strands, slot, matrix, seen)
 
 
 def has_hair(object: Any) -> bool:
@@ -27,19 +28,17 @@ def has_hair(object: Any) -> bool:
     return next(_systems(object), None) is not None
 
 
-def add_curves(context: Context, object: Any, matrix: Any, is_seen: bool) -> None:
+def add_curves(context: Context, object: Any, matrix: Any, seen: Seen) -> None:
     """An object of type Hair Curves."""
     strands = _of_curves(object.data)
     if strands is not None:
-        _add(context, object.name, strands, _slot(object, 0), matrix, is_seen)
+        _add(context, object.name, strands, _slot(object, 0), matrix, seen)
 
 
-def _add(context: Context, name: str, strands: hyades.Strands, data: Any, matrix: Any, is_seen: bool) -> None:
+def _add(context: Context, name: str, strands: hyades.Strands, data: Any, matrix: Any, seen: Seen) -> None:
     body = objects.Curves(curves=strands, material=strand_material(context, context.override or data))
     body.transform = axes.steps_to_world(matrix)
-    if not is_seen:
-        body.visible_to_camera = False
-    context.add_object(name, body)
+    add_seen(context, name, body, seen)
 
 
 def _slot(object: Any, index: int) -> Optional[Any]:

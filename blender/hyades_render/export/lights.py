@@ -15,11 +15,11 @@ import numpy
 from hyades import lights, materials, objects
 
 from . import axes
-from .context import Context, free_name
+from .context import Context
 from .nodes import graph, values
 from .nodes.translator import Translator
 from .photometry import Profile, profile_of, profile_steps
-from .visibility import tell_of_lamp
+from .visibility import rays_of_lamp, say, tell_of_bounces
 
 _SIDES = 96
 """Corners of an ellipse; its area is that of the true one."""
@@ -67,12 +67,7 @@ def add_light(context: Context, light: PlacedLight) -> None:
         if profile is not None:
             context.complain(light.where, "IES profiles are supported for point lamps; it shines as without")
         {"SPOT": _add_spot, "SUN": _add_sun, "AREA": _add_area}[data.type](context, light, color)
-    tell_of_lamp(context, light.where, light.object)
-    for key in ("use_shadow", "cycles.cast_shadow"):
-        owner = data.cycles if key.startswith("cycles.") and hasattr(data, "cycles") else data
-        if not getattr(owner, key.rpartition(".")[2], True):
-            context.complain(light.where, "everything throws shadows in its light")
-            break
+    tell_of_bounces(context, light.where, data)
 
 
 def _color(context: Context, light: PlacedLight) -> tuple[Any, Profile | None]:
@@ -110,13 +105,33 @@ def _strength(translator: Translator, emission: graph.Output) -> float:
 
 
 def _add(context: Context, light: PlacedLight, made: lights.Light) -> None:
-    context.job.lights[free_name(light.name, context.job.lights)] = made
+    _say_what_it_lights(context, light, made, made)
+    context.add_light(light.name, made, context.names.links.owner(light.object))
 
 
-def _add_body(context: Context, light: PlacedLight, body: objects.Object) -> None:
+def _add_body(context: Context, light: PlacedLight, body: objects.Mesh) -> None:
     """A lamp that has a size, which the camera does not see."""
     body.visible_to_camera = False
-    context.add_object(light.name, body)
+    _say_what_it_lights(context, light, body, body.emit)
+    context.add_object(light.name, body, context.names.links.owner(light.object))
+
+
+def _say_what_it_lights(context: Context, light: PlacedLight, made: Any, shining: Any) -> None:
+    """`shining`: what of it says whose shadows there are."""
+    say(context, light.where, made, rays_of_lamp(light.object))
+    if _has_shadows(light.object.data):
+        return
+    if context.integrator == "path":
+        shining.shadow_linking = lights.Linking(include=[])
+        return
+    what = f"everything throws shadows in its light: the integrator {context.integrator} has no lamps without"
+    context.complain(light.where, what)
+
+
+def _has_shadows(data: Any) -> bool:
+    cycles = getattr(data, "cycles", None)
+    # Cycles had a switch of its own, beside which the lamp's was Eevee's.
+    return bool(getattr(cycles, "cast_shadow", getattr(data, "use_shadow", True)))
 
 
 def _add_point(context: Context, light: PlacedLight, color: Any, profile: Profile | None) -> None:

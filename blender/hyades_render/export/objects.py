@@ -22,7 +22,7 @@ from .nodes.evaluate.noise import hashed
 from .nodes.surface import PartOfSurface
 from .places import MatrixPlaces
 from .soft_lamps import Nearness
-from .visibility import LayerFlags, is_seen
+from .visibility import LayerFlags, Seen, Shown, add_seen, say, seen_by
 from .volumes import add_volume
 
 _BECOME_MESHES = {"CURVE", "SURFACE", "META", "FONT"}
@@ -57,7 +57,7 @@ class _Copies(NamedTuple):
 
     name: str
     pieces: list[Piece]
-    is_seen: bool
+    seen: Seen
     matrices: list[tuple[float, ...]]
     """Three rows each."""
     ids: list[Any]
@@ -74,6 +74,7 @@ class _Copies(NamedTuple):
 def add_objects(context: Context) -> None:
     """Adds what has a surface, and the lamps, to the job."""
     copies: dict[Any, _Copies] = {}
+    context.names.links.collect(context.depsgraph, context.integrator)
     flags, nearness = LayerFlags(context), Nearness()
     some_become_meshes = False  # of millions of copies each question takes its time
     for instance in context.depsgraph.object_instances:
@@ -85,8 +86,7 @@ def add_objects(context: Context) -> None:
         is_copy = instance.is_instance and not (some_become_meshes and _is_own_mesh(instance))
         if is_copy:  # there may be millions
             data = object.data
-            is_indirect = flags.is_indirect(instance)
-            known = copies.get(_kind(object, is_indirect)) if data is not None else None
+            known = copies.get(_kind(object, flags.shown(instance, True))) if data is not None else None
             if known is not None and not (known.looks_differ and _add_another(context, known, instance, object)):
                 first, second, third, _ = instance.matrix_world
                 known.matrices.append(first[:] + second[:] + third[:])
@@ -95,9 +95,9 @@ def add_objects(context: Context) -> None:
             if known is not None:
                 continue
         if instance.show_particles and has_hair(object):
-            _add_hair_of(context, instance, object, flags.is_indirect(instance))
+            _add_hair_of(context, instance, object, flags.shown(instance, is_copy))
         if instance.show_self:
-            _add(context, copies, instance, object, is_copy, flags.is_indirect(instance))
+            _add(context, copies, instance, object, is_copy, flags.shown(instance, is_copy))
             if not is_copy:
                 nearness.add(object, instance.matrix_world)
     nearness.tell(context)
@@ -116,7 +116,7 @@ def _is_own_mesh(instance: Any) -> bool:
 
 
 def _add(
-    context: Context, copies: dict[Any, _Copies], instance: Any, object: Any, is_copy: bool, is_indirect: bool
+    context: Context, copies: dict[Any, _Copies], instance: Any, object: Any, is_copy: bool, shown: Shown
 ) -> None:
     """One object, or the first of many copies."""
     kind, matrix = object.type, instance.matrix_world
@@ -124,28 +124,28 @@ def _add(
     if kind == "MESH" and is_copy:
         pieces = pieces_of(context, object, matrix, _origin(instance))
         rows = tuple(axes.array(matrix)[:3].reshape(-1))
-        seen = is_seen(context, object) and not is_indirect
         ids = [_id(instance)] if context.moves else []
-        copies[_kind(object, is_indirect)] = _Copies(object.name, pieces, seen, [rows], ids, [])
+        seen = seen_by(context, object, shown)
+        copies[_kind(object, shown)] = _Copies(object.name, pieces, seen, [rows], ids, [])
     elif kind == "MESH":
-        seen = is_seen(context, object) and not is_indirect
+        seen = seen_by(context, object, shown)
         for piece in pieces_of(context, object, matrix, _origin(instance)):
             _add_piece(context, object.name, piece, axes.steps_to_world(matrix), seen)
     elif kind == "LIGHT":
         add_light(context, PlacedLight(object.name, object, axes.placed(matrix)))
     elif kind == "CURVES":
-        add_curves(context, object, matrix, is_seen(context, object) and not is_indirect)
+        add_curves(context, object, matrix, seen_by(context, object, shown))
     elif kind == "VOLUME":
-        add_volume(context, object, axes.array(matrix))
+        add_volume(context, object, axes.array(matrix), seen_by(context, object, shown))
     elif kind not in _WITHOUT:
         context.complain(f"object '{object.name}'", f"objects of type {kind.lower()} are not supported yet")
 
 
-def _add_hair_of(context: Context, instance: Any, object: Any, is_indirect: bool) -> None:
+def _add_hair_of(context: Context, instance: Any, object: Any, shown: Shown) -> None:
     if instance.is_instance:
         context.complain(f"object '{object.name}'", "the hair of copies is left out")
         return
-    add_hair(context, object, instance.matrix_world, is_seen(context, object) and not is_indirect)
+    add_hair(context, object, instance.matrix_world, seen_by(context, object, shown))
 
 
 def _tell_of_settings(context: Context, object: Any) -> None:
@@ -192,10 +192,10 @@ def _add_another(context: Context, copies: _Copies, instance: Any, object: Any) 
     return True
 
 
-def _kind(object: Any, is_indirect: bool) -> tuple[int, int, bool]:
+def _kind(object: Any, shown: Shown) -> tuple[int, int, Shown]:
     """What is the same for all copies of one thing. The object of an instance is one for this step alone, whose address the
     next one may have, too; the object that it stands for stays."""
-    return object.original.as_pointer(), object.data.as_pointer(), is_indirect
+    return object.original.as_pointer(), object.data.as_pointer(), shown
 
 
 def _id(instance: Any) -> tuple[int, ...]:
@@ -273,12 +273,10 @@ def _material_in(context: Context, object: Any, slot: int) -> Optional[Any]:
     return slots[min(slot, len(slots) - 1)].material if len(slots) else None
 
 
-def _add_piece(context: Context, name: str, piece: Piece, transform: Any, is_seen: bool) -> None:
+def _add_piece(context: Context, name: str, piece: Piece, transform: Any, seen: Seen) -> None:
     body = piece.object()
     body.transform = transform
-    if not is_seen:
-        body.visible_to_camera = False
-    context.add_object(name, body)
+    add_seen(context, name, body, seen)
 
 
 def _placed(rows: list[tuple[float, ...]]) -> tuple[numpy.ndarray, numpy.ndarray]:
@@ -300,24 +298,22 @@ def _place(context: Context, copies: _Copies) -> None:
     if shines or (len(placed) < 2 and (copies.looks_differ or not context.moves)):
         for matrix in placed:
             for piece in copies.pieces:
-                _add_piece(context, copies.name, piece, axes.steps(matrix), copies.is_seen)
+                _add_piece(context, copies.name, piece, axes.steps(matrix), copies.seen)
     elif copies.pieces and len(placed):
         ids = [copies.ids[at] for at in there] if context.moves else None
         _place_group(context, copies, MatrixPlaces(placed, ids))
     for rows, pieces in copies.others:
         for matrix in _placed([rows])[0]:
             for piece in pieces:
-                _add_piece(context, copies.name, piece, axes.steps(matrix), copies.is_seen)
+                _add_piece(context, copies.name, piece, axes.steps(matrix), copies.seen)
 
 
 def _place_group(context: Context, copies: _Copies, places: MatrixPlaces) -> None:
     """Copies as a group, and a file of places."""
     bodies: dict[str, objects.Object] = {}
     for piece in copies.pieces:
-        bodies[free_name(copies.name, bodies)] = piece.object()
+        body = bodies[free_name(copies.name, bodies)] = piece.object()
+        say(context, f"object '{copies.name}'", body, copies.seen.keys)  # each for itself: some may be filled
     group = objects.Group(objects=bodies)
     context.job.groups[free_name(copies.name, context.job.groups)] = group
-    instance = objects.Instance(instance=group, places=places)
-    if not copies.is_seen:
-        instance.visible_to_camera = False
-    context.add_object(copies.name, instance)
+    context.add_object(copies.name, objects.Instance(instance=group, places=places), copies.seen.owner)

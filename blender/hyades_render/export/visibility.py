@@ -1,80 +1,174 @@
-"""Who sees a thing: the camera, or rays of one kind, which jobs cannot tell apart."""
+"""Who sees a thing: rays of which kinds, and whether the camera sees a hole there."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from typing import Any
+from collections.abc import Iterable, Iterator
+from typing import Any, NamedTuple
+
+from hyades import materials
 
 from .context import Context
+from .links import Owner
+from .nodes.values import is_constant
 
-_OF_OBJECTS = ("diffuse", "glossy", "transmission", "volume_scatter", "shadow")
+_KEYS = {
+    "camera": "visible_to_camera",
+    "diffuse": "visible_to_diffuse",
+    "glossy": "visible_to_glossy",
+    "transmission": "visible_to_transmission",
+    "volume_scatter": "visible_to_volume",
+    "scatter": "visible_to_volume",
+    "shadow": "visible_to_shadow",
+}
+"""What the job calls a ray, by Blender's words for it."""
 _OF_LAMPS = ("diffuse", "glossy", "transmission", "volume_scatter")
-_OF_WORLDS = ("diffuse", "glossy", "transmission", "scatter")
+_OF_OBJECTS = ("camera", *_OF_LAMPS, "shadow")
+_OF_WORLDS = ("camera", "diffuse", "glossy", "transmission", "scatter")
 
 
-def is_seen(context: Context, object: Any) -> bool:
-    """Whether the camera sees an object; complains where other rays do not."""
-    where = f"object '{object.name}'"
-    _tell(context, where, [ray for ray in _OF_OBJECTS if not getattr(object, f"visible_{ray}")])
-    _tell_of_links(context, where, object)
-    if object.is_holdout:
-        context.complain(where, "jobs have no holdouts: it is seen")
-    if object.is_shadow_catcher:
-        context.complain(where, "jobs have no shadow catchers: it is seen")
-    return bool(object.visible_camera)
+class Shown(NamedTuple):
+    """How an object shows itself, or an instancer its copies."""
+
+    hidden: tuple[str, ...] = ()
+    """Rays that it is not there for, by Blender's words."""
+    is_holdout: bool = False
+    is_catcher: bool = False
+    linked: int = 0
+    """The address of an instancer that light is linked to: then it is not to what is copied."""
 
 
-def tell_of_lamp(context: Context, where: str, object: Any) -> None:
-    """Complains where rays of one kind do not meet a lamp's light."""
-    _tell(context, where, [ray for ray in _OF_LAMPS if not getattr(object, f"visible_{ray}")])
-    _tell_of_links(context, where, object)
-    if getattr(getattr(object.data, "cycles", None), "max_bounces", 1024) < getattr(getattr(context.scene, "cycles", None), "max_bounces", 12):
-        context.complain(where, "its Max Bounces are those of the scene")
+class Seen(NamedTuple):
+    """What the job says of an object besides what it is."""
 
-
-def is_world_seen(context: Context, world: Any) -> bool:
-    """Whether the camera sees the world; complains where other rays do not."""
-    found = getattr(world, "cycles_visibility", None)
-    _tell(context, f"world '{world.name}'", [ray for ray in _OF_WORLDS if not getattr(found, ray, True)])
-    return bool(getattr(found, "camera", True))
-
-
-def _tell(context: Context, where: str, hidden: list[str]) -> None:
-    if hidden:
-        context.complain(where, f"it is there for rays of {', '.join(hidden)} too: only the camera's can be kept from it")
-
-
-def _tell_of_links(context: Context, where: str, object: Any) -> None:
-    """Complains where light is for some things alone, or some alone are in its way: since Blender 4.0."""
-    links = getattr(object, "light_linking", None)
-    if _has_things(links, "receiver_collection"):
-        context.complain(where, "its light falls on all things: light linking is left out")
-    if _has_things(links, "blocker_collection"):
-        context.complain(where, "all things throw shadows in its light: shadow linking is left out")
-
-
-def _has_things(links: Any, name: str) -> bool:
-    found = getattr(links, name, None)
-    return found is not None and len(found.all_objects) > 0  # empty ones link nothing
+    keys: dict[str, bool]
+    """Those that are not as they come."""
+    owner: Owner
 
 
 class LayerFlags:
-    """What collections of a view layer say of the objects in them, which the objects do not say themselves."""
+    """What a view layer and instancers say of what they show, which the objects do not say themselves."""
 
     def __init__(self, context: Context) -> None:
         self._layer = context.depsgraph.view_layer_eval
-        found = list(_with_flags(self._layer.layer_collection))
-        self._any = any(one.indirect_only for one in found)
-        for one in found:
-            if one.holdout:
-                context.complain(f"collection '{one.name}'", "jobs have no holdouts: what is in it is seen")
+        self._linked = context.names.links.linked()
+        self._of_layer = any(True for _ in _with_flags(self._layer.layer_collection))
+        # Of millions of copies each question takes its time: none is asked where nothing that may show them has an answer.
+        showing = (one for one in context.depsgraph.objects if one.type != "LIGHT")
+        told = (_hidden(one) or one.is_holdout or one.is_shadow_catcher for one in showing)
+        self._of_copies = self._of_layer or bool(self._linked) or any(told)
+        self._instancers: dict[int, Shown] = {}
 
-    def is_indirect(self, instance: Any) -> bool:
-        """Whether the camera does not see what an instance of the depsgraph shows; of a copy who shows it counts."""
-        if not self._any:
-            return False
-        shown_by = instance.parent if instance.is_instance else instance.object
-        return bool(shown_by.indirect_only_get(view_layer=self._layer))
+    def shown(self, instance: Any, is_copy: bool) -> Shown:
+        """How an instance of the depsgraph is shown; of a copy who shows it counts."""
+        if is_copy and not self._of_copies:
+            return _PLAIN
+        if not instance.is_instance:
+            return self._shown_by(instance.object)
+        by = instance.parent
+        address = by.original.as_pointer()
+        if address not in self._instancers:
+            shown = self._shown_by(by)
+            self._instancers[address] = shown._replace(linked=address if address in self._linked else 0)
+        return self._instancers[address]
+
+    def _shown_by(self, by: Any) -> Shown:
+        hidden, is_holdout = _hidden(by), bool(by.is_holdout)
+        if self._of_layer:
+            is_holdout = bool(by.holdout_get(view_layer=self._layer))
+            if "camera" not in hidden and not is_holdout and by.indirect_only_get(view_layer=self._layer):
+                hidden = ("camera", *hidden)
+        return Shown(hidden, is_holdout, bool(by.is_shadow_catcher))
+
+
+_PLAIN = Shown()
+
+
+def seen_by(context: Context, object: Any, shown: Shown) -> Seen:
+    """Who sees an object that is shown so; complains where it is to show shadows alone."""
+    if object.is_shadow_catcher or shown.is_catcher:
+        context.complain(f"object '{object.name}'", "jobs have no shadow catchers: it is seen")
+    keys = _switched_off((*shown.hidden, *_hidden(object)))
+    if shown.is_holdout:
+        keys["holdout"] = True
+    return Seen(keys, context.names.links.owner(object, shown.linked))
+
+
+def add_seen(context: Context, name: str, body: Any, seen: Seen) -> None:
+    """Adds an object to the job, called like `name`, and says who sees it."""
+    say(context, f"object '{name}'", body, seen.keys)
+    context.add_object(name, body, seen.owner)
+
+
+def say(context: Context, where: str, thing: Any, keys: dict[str, bool]) -> None:
+    """Says `keys` of an object, a light or an environment; tells which are left out, as the job would be refused."""
+    is_path, is_filled = context.integrator == "path", _is_filled(thing)
+    is_entered = _is_entered(getattr(thing, "material", None))
+    left_out = []
+    for key, value in keys.items():
+        if _can_say(key, is_path, is_filled, is_entered):
+            setattr(thing, key, value)
+        else:
+            left_out.append(key.removeprefix("visible_to_"))
+    if left_out:
+        why = f"the integrator {context.integrator} cannot tell them apart"
+        if is_filled:
+            why = "all have to see what has an inside"
+        elif is_path:
+            why = "light that went in has to come out"
+        context.complain(where, f"it is there for rays of {', '.join(left_out)} too: {why}")
+
+
+def _can_say(key: str, is_path: bool, is_filled: bool, is_entered: bool) -> bool:
+    if key == "holdout":
+        return True
+    if key == "visible_to_transmission" and is_entered:
+        return False
+    # What is filled is hidden from the camera at most, and paths from lights would show it even there.
+    return is_path or not is_filled if key == "visible_to_camera" else is_path and not is_filled
+
+
+def rays_of_lamp(object: Any) -> dict[str, bool]:
+    """What the job says of a lamp that is not there for all rays."""
+    return _switched_off(_hidden(object, _OF_LAMPS))
+
+
+def rays_of_world(world: Any) -> dict[str, bool]:
+    """What the job says of a world that is not there for all rays."""
+    found = getattr(world, "cycles_visibility", None)
+    return _switched_off(ray for ray in _OF_WORLDS if not getattr(found, ray, True))
+
+
+def tell_of_bounces(context: Context, where: str, lamp: Any) -> None:
+    """Complains where a lamp's light is to bounce less often than that of others."""
+    least = getattr(getattr(context.scene, "cycles", None), "max_bounces", 12)
+    if getattr(getattr(lamp, "cycles", None), "max_bounces", 1024) < least:
+        context.complain(where, "its Max Bounces are those of the scene")
+
+
+def _hidden(object: Any, rays: tuple[str, ...] = _OF_OBJECTS) -> tuple[str, ...]:
+    return tuple(ray for ray in rays if not getattr(object, f"visible_{ray}"))
+
+
+def _switched_off(rays: Iterable[str]) -> dict[str, bool]:
+    off = {_KEYS[ray] for ray in rays}
+    return {key: False for key in dict.fromkeys(_KEYS.values()) if key in off}
+
+
+def _is_filled(thing: Any) -> bool:
+    """Whether the job has something inside of it."""
+    if getattr(thing, "interior", None) is not None:
+        return True
+    return getattr(getattr(thing, "material", None), "subsurface", None) is not None
+
+
+def _is_entered(material: Any) -> bool:
+    """Whether light goes into what is of the material, as into glass."""
+    if isinstance(material, materials.Dielectric):
+        return True
+    if isinstance(material, materials.Principled):
+        return not material.thin_walled and not is_constant(material.transmission, 0)
+    parts = (getattr(material, part, None) for part in ("first", "second", "base", "front", "back"))
+    return any(_is_entered(part) for part in parts if isinstance(part, materials.Material))
 
 
 def _with_flags(collection: Any) -> Iterator[Any]:

@@ -18,6 +18,7 @@ from .nodes import graph, values
 from .nodes.graph import Output
 from .nodes.translator import Translator
 from .nodes.volumes import heat_of, medium_of_node
+from .visibility import Seen, add_seen
 
 _ENDS = {".vdb", ".nvdb"}
 _NUMBERS, _COLORS = {"FLOAT", "DOUBLE"}, {"VECTOR_FLOAT"}
@@ -38,7 +39,7 @@ class _Field(NamedTuple):
     """By how much lengths of its space are longer in the world, where densities are those of its own space; else 1."""
 
 
-def add_volume(context: Context, object: Any, matrix: Any) -> None:
+def add_volume(context: Context, object: Any, matrix: Any, seen: Seen) -> None:
     """A Volume object as a box that is filled with what its file says."""
     data, where = object.data, f"object '{object.name}'"
     if not data.filepath:
@@ -71,7 +72,7 @@ def add_volume(context: Context, object: Any, matrix: Any) -> None:
         return
     box = objects.Mesh(mesh=_box(object.bound_box, field.voxels), material=materials.NullMaterial(), interior=medium)
     box.transform = axes.steps(axes.placed(matrix))
-    context.add_object(object.name, box)
+    add_seen(context, object.name, box, seen)
 
 
 def _file(data: Any) -> Optional[str]:

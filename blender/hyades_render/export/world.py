@@ -16,7 +16,7 @@ from .nodes.images import image_file
 from .nodes.mappings import own_matrix
 from .nodes.translator import Inexpressible, Translator
 from .nodes.volumes import medium_of
-from .visibility import is_world_seen
+from .visibility import rays_of_world, say
 
 
 _SUN = 145.0
@@ -29,7 +29,8 @@ def add_world(context: Context) -> None:
     if world is None or not context.depsgraph.view_layer_eval.use_sky:
         return
     context.job.environment = _environment(context, world)
-    if not is_world_seen(context, world) or context.scene.render.film_transparent:
+    say(context, f"world '{world.name}'", context.job.environment, rays_of_world(world))
+    if context.scene.render.film_transparent:
         context.job.environment.visible_to_camera = False
 
 

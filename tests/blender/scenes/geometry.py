@@ -3,7 +3,8 @@
 import math
 
 import bpy
-from scene import add, camera, floor, light, link, material, node, primitive, scene, set_of_cycles, shader_of, world
+from scene import add, camera, floor, light, link, material, node, primitive, scattered_once, scene, set_of_cycles
+from scene import shader_of, sharpen, world
 
 
 def lit() -> None:
@@ -141,6 +142,24 @@ def hidden() -> None:
     lit()
     primitive("cube", material(Color=0.5), at=(-1.5, 0, 1)).hide_render = True
     primitive("cube", material(Color=0.5), at=(1.5, 0, 1)).visible_camera = False
+
+
+@scene(samples=128)
+def hidden_from_some_rays() -> None:
+    # Lamps without a size, which no ray meets: of others Cycles weighs both ways to find them as if the same things
+    # stopped rays of each.
+    floor()
+    light("POINT", 250, at=(2, -3, 4), shadow_soft_size=0)
+    light("POINT", 250, at=(-3, -3, 3), shadow_soft_size=0, color=(0.6, 0.8, 1)).visible_glossy = False
+    primitive("plane", material("Roof", Color=(0.8, 0.6, 0.1)), at=(-1.9, -0.5, 1.3), size=1.4).visible_shadow = False
+    primitive("cube", material("Red", Color=(0.8, 0.1, 0.1)), at=(-0.4, 0.4, 0.6), size=1.2).visible_diffuse = False
+    steel = material("Steel", "ShaderNodeBsdfGlossy", Color=0.8, Roughness=0.4)
+    primitive("uv_sphere", scattered_once(steel), at=(1.2, 0, 0.6), radius=0.6, smooth=True)
+    primitive("cube", material("Green", Color=(0.1, 0.7, 0.2)), at=(2.3, 0.3, 0.4), size=0.8).visible_glossy = False
+    primitive("cube", material("Hole", Color=0.7), at=(0.4, -1.4, 0.25), turn=(0, 0, 30), size=0.5).is_holdout = True
+    mirror = material("Mirror", "ShaderNodeBsdfGlossy", Color=0.9, Roughness=0.0)
+    sharpen(mirror)
+    primitive("plane", mirror, at=(0, 2.2, 1.2), turn=(90, 0, 0), size=1, scale=(6, 2.4, 1))
 
 
 @scene(samples=128, complaints=("object 'Text': its normals lean far from its faces",))

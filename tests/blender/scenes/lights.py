@@ -2,8 +2,9 @@
 
 import math
 
+import bpy
 from lights_room import room
-from scene import camera, light, scene, world
+from scene import camera, floor, light, material, primitive, scene, world
 
 
 @scene()
@@ -27,7 +28,6 @@ def emission_of(lamp):
 
 def profiled(socket: str, strength: float, **keys):
     """A point lamp that an IES profile makes brighter to one side and above; half a watt of light for each of its own."""
-    import bpy
 
     def candela(up: int, around: int) -> float:
         return 30 * (1 + math.cos(math.radians(up))) * (1.2 + math.cos(math.radians(around - 50))) + 5
@@ -104,7 +104,6 @@ def large_sun() -> None:
 @scene(mean=1, block=10, complaints=("it is sheared",))
 def area_of_a_sheared_lamp() -> None:
     # Cycles' shines along an axis that is not its surface's normal.
-    import bpy
     from scene import add
 
     room()
@@ -123,6 +122,16 @@ def point_with_falloff() -> None:
     falloff = tree.nodes.new("ShaderNodeLightFalloff")
     falloff.inputs["Strength"].default_value = 90
     tree.links.new(falloff.outputs["Quadratic"], emission.inputs["Strength"])
+
+
+@scene()
+def point_without_shadows() -> None:
+    room()
+    lamp = light("POINT", 300, at=(2, -2, 4), shadow_soft_size=0)
+    if hasattr(lamp.data.cycles, "cast_shadow"):
+        lamp.data.cycles.cast_shadow = False
+    else:
+        lamp.data.use_shadow = False
 
 
 @scene()
@@ -167,3 +176,34 @@ def area_from_behind() -> None:
 def plain_world() -> None:
     room()
     world((0.4, 0.5, 0.7), 1.5)
+
+
+if bpy.app.version >= (4, 0):  # whose lamps are linked to things
+
+    def collection(state: str, *bodies):
+        made = bpy.data.collections.new(state)
+        for number, body in enumerate(bodies):
+            made.objects.link(body)
+            made.collection_objects[number].light_linking.link_state = state
+        return made
+
+    def cube_and_ball():
+        ground = floor()
+        ball = primitive("uv_sphere", material("Ball", Color=(0.8, 0.4, 0.2)), at=(-1, 0, 0.8), radius=0.8, smooth=True)
+        return primitive("cube", material("Cube", Color=0.6), at=(1, 0, 0.6), turn=(0, 0, 30), size=1.2), ball, ground
+
+    @scene()
+    def linked_lights() -> None:
+        cube, ball, ground = cube_and_ball()
+        key = light("POINT", 300, at=(2, -2, 4), color=(1, 0.6, 0.5), shadow_soft_size=0)
+        key.light_linking.receiver_collection = collection("INCLUDE", ball, ground)
+        soft = light("AREA", 150, at=(-3, -2, 3), color=(0.5, 0.7, 1), size=1)
+        soft.light_linking.receiver_collection = collection("EXCLUDE", ball)
+        glow = primitive("cube", material("Glow", "ShaderNodeEmission", Strength=8), at=(0, -1.2, 0.2), size=0.4)
+        glow.light_linking.receiver_collection = collection("INCLUDE", cube)
+
+    @scene()
+    def linked_shadows() -> None:
+        cube, ball, _ = cube_and_ball()
+        light("POINT", 200, at=(2, -3, 4), shadow_soft_size=0).light_linking.blocker_collection = collection("EXCLUDE", ball)
+        light("AREA", 150, at=(-3, -2, 3), size=1).light_linking.blocker_collection = collection("INCLUDE", ball)

@@ -5,7 +5,7 @@ import math
 import bpy
 import numpy
 from lights_room import room
-from scene import floor, light, link, material, node, primitive, scene, world
+from scene import floor, light, link, material, node, primitive, scattered_once, scene, world
 
 
 def panorama(width: int = 128):
@@ -30,6 +30,18 @@ def environment(turn=(0.0, 0.0, 0.0)):
     link(nodes, moved.outputs[0], texture.inputs["Vector"])
     link(nodes, texture.outputs[0], nodes.nodes["Background"].inputs["Color"])
     return nodes
+
+
+@scene(samples=128)
+def world_for_some_rays() -> None:
+    # Metal shows it, and the camera does not; what is matt has the light of a lamp alone.
+    floor()
+    light("POINT", 200, at=(2, -2, 4), shadow_soft_size=0)
+    steel = material("Steel", "ShaderNodeBsdfGlossy", Color=0.8, Roughness=0.4)
+    primitive("uv_sphere", scattered_once(steel), at=(0, 0, 1), radius=1, smooth=True)
+    world((0.4, 0.5, 0.7))
+    rays = bpy.context.scene.world.cycles_visibility
+    rays.camera = rays.diffuse = False
 
 
 @scene(samples=128)
