@@ -117,6 +117,7 @@ class Strands:
 
     def _widths(self, widths: Any, index: int) -> Any:
         count = len(self.points[index])
+        given: Any  # newer hints of numpy's tell apart how many axes each of these has
         if numpy.ndim(widths) == 0:
             given = numpy.full(count, widths, "<f4")
         elif isinstance(widths, (tuple, list)) and len(widths) == 2 and numpy.ndim(widths[0]) == 0:
