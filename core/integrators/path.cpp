@@ -1,6 +1,7 @@
 #include "core/integrators/path.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstdint>
 #include <optional>
@@ -190,10 +191,8 @@ class Path final : public WalkWatcher {
     if (!lights_found_) return;
     if (work_.log != nullptr) work_.log->lines.emplace_back("  looks for lights as shadow rays do");
     MediaNumbers numbers(sampler_, depth(), MediaNumbers::Purpose::connection);
-    for (uint8_t list = 0; scene_.blocker_lists >> list != 0; ++list) {
-      if ((scene_.blocker_lists >> list & 1U) != 0) find_lights_of(list, numbers);
-      if (list == 63) break;
-    }
+    for (ListBits left = scene_.blocker_lists; left != 0; left &= left - 1)
+      find_lights_of(static_cast<uint8_t>(std::countr_zero(left)), numbers);
   }
 
   /// Those whose blockers are `list`.

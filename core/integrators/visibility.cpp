@@ -6,7 +6,7 @@ namespace hyades::core {
 
 void keep_blockers(const Scene& scene, uint8_t blockers, MediumStack& around) {
   around.keep([&](const Body& body) { return is_blocker(scene.objects[body.object], blockers); });
-  if ((scene.rest_in_lists >> blockers & 1U) == 0) around.keep_no_atmosphere();
+  if (!is_in(scene.rest_in_lists, blockers)) around.keep_no_atmosphere();
 }
 
 void cross(const SceneObject& object, const SurfacePoint& point, const Vec3& direction,

@@ -56,7 +56,7 @@ inline void keep_seen(const Scene& scene, RayKind kind, MediumStack& around) {
 
 /// Whether `object` casts shadows in the light of lights whose blockers are list `blockers`.
 inline bool is_blocker(const SceneObject& object, uint8_t blockers) {
-  return (object.in_lists >> blockers & 1U) != 0;
+  return is_in(object.in_lists, blockers);
 }
 
 /// Takes out of `around` what is not on the list `blockers`, the atmosphere too.

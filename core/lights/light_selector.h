@@ -14,6 +14,9 @@ namespace hyades::core {
 using ListBits = uint64_t;
 inline constexpr ListBits kAllLists = ~ListBits{0};
 
+/// Whether what is in `lists` is in list `number`.
+constexpr bool is_in(ListBits lists, uint8_t number) { return (lists >> number & 1U) != 0; }
+
 struct SelectedLight {
   uint32_t index = 0;
   float probability = 0.0F;

@@ -106,14 +106,17 @@ class BodyMaker {
     return {};
   }
 
+  /// Whether light goes into it through its surface, as into glass.
+  static bool is_entered(const FlatObject& object, const SceneObject& seen) {
+    return has_inside(*object.desc) && seen.material->leads_inside();
+  }
+
   /// Rays that went in are of a kind that must see the surface from within.
   Status check_glass() const {
     for (size_t i = 0; i < objects_.size(); ++i) {
       const FlatObject& object = objects_[i];
-      if (meet(object.placement.seen_by, RayKind::transmission) || !has_inside(*object.desc) ||
-          !scene_.objects[i].material->leads_inside()) {
-        continue;
-      }
+      if (meet(object.placement.seen_by, RayKind::transmission)) continue;
+      if (!is_entered(object, scene_.objects[i])) continue;
       return at_object(object, Error{"light goes into it and must come out again; expected "
                                      "visible_to_transmission: true"});
     }
@@ -151,7 +154,7 @@ class BodyMaker {
   Status add(const FlatObject& object, SceneObject& added) {
     auto interior = interior_of(object);
     if (!interior) return at_object(object, interior.error());
-    const bool entered = has_inside(*object.desc) && added.material->leads_inside();
+    const bool entered = is_entered(object, added);
     if (*interior == nullptr && !entered) return {};
     if (auto done = check_visible(object, *interior != nullptr); !done) return done;
     Body& body = scene_.bodies.emplace_back();

@@ -92,7 +92,7 @@ struct Scene {
   }
   /// Whether light `index` lights what is in `lists`.
   bool links(uint32_t index, ListBits lists) const {
-    return (lists >> light_links[index].receivers & 1U) != 0;
+    return is_in(lists, light_links[index].receivers);
   }
 
   size_t triangles = 0;       ///< as placed: instances count each time
