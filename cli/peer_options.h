@@ -15,12 +15,15 @@ inline void add_peer_options(CLI::App& app, farm::Peer& peer, const std::string&
   const auto grouped = [&](CLI::Option* option) { option->group(group); };
   // Not by check(): CLI11 2.4 passes over a variable of the environment that fails it.
   const auto set_address = [&peer](const std::string& text) {
-    const std::string error = address_error(text);
-    if (!error.empty()) throw CLI::ValidationError("--coordinator", error);
+    for (const std::string& address : farm::split_addresses(text)) {
+      const std::string error = address_error(address);
+      if (!error.empty()) throw CLI::ValidationError("--coordinator", error);
+    }
     peer.address = text;
   };
   grouped(app.add_option_function<std::string>("--coordinator", set_address,
-                                               "HOST:PORT of the coordinator")
+                                               "HOST:PORT of the coordinator; of several, one of "
+                                               "which leads, with commas between")
               ->envname("HYADES_COORDINATOR")
               ->default_str(peer.address));
   grouped(app.add_option("--token-file", peer.token_file, "file with the farm's token")

@@ -29,8 +29,15 @@ namespace tls = grpc::experimental;
 constexpr size_t kShortestToken = 16;
 /// How soon certificates that have changed are noticed.
 constexpr unsigned kReadAgainSeconds = 2;
-constexpr int kKeepaliveMs = 20'000;
-constexpr int kKeepaliveTimeoutMs = 10'000;
+/// When a connection over which nothing has come is pinged, and how long the answer may take.
+struct Keepalive {
+  int after_ms;
+  int timeout_ms;
+};
+constexpr Keepalive kPatient{20'000, 10'000};
+/// Coordinators permit pings that are kLeastPingInterval apart.
+constexpr Keepalive kSoon{2000, 4000};
+static_assert(kSoon.after_ms > kLeastPingInterval.count());
 
 /// A failed assertion ends the process: that has to be seen.
 void say_last_words(gpr_log_func_args* line) {
@@ -77,6 +84,16 @@ core::Result<std::string> read_token(const std::string& file) {
   return token;
 }
 
+std::vector<std::string> split_addresses(const std::string& text) {
+  std::vector<std::string> addresses;
+  size_t from = 0;
+  for (size_t comma = 0; comma != std::string::npos; from = comma + 1) {
+    comma = text.find(',', from);
+    addresses.push_back(text.substr(from, comma - from));
+  }
+  return addresses;
+}
+
 bool is_loopback(const std::string& address) {
   const std::string host = address.substr(0, address.rfind(':'));
   return host == "localhost" || host == "[::1]" ||
@@ -84,12 +101,17 @@ bool is_loopback(const std::string& address) {
 }
 
 std::string plaintext_warning(const Peer& peer) {
-  if (!peer.ca_file.empty() || !peer.insecure || is_loopback(peer.address)) return {};
-  return "plain text to " + peer.address + " (--insecure): whoever listens may read everything" +
+  if (!peer.ca_file.empty() || !peer.insecure) return {};
+  std::string beyond;
+  for (const std::string& address : split_addresses(peer.address)) {
+    if (!is_loopback(address)) beyond += (beyond.empty() ? "" : ", ") + address;
+  }
+  if (beyond.empty()) return {};
+  return "plain text to " + beyond + " (--insecure): whoever listens may read everything" +
          (peer.token_file.empty() ? "" : ", the token too");
 }
 
-core::Result<std::shared_ptr<grpc::Channel>> connect(const Peer& peer) {
+core::Result<std::shared_ptr<grpc::Channel>> connect(const Peer& peer, Notices notices) {
   quiet_grpc();
   std::shared_ptr<grpc::ChannelCredentials> credentials;
   if (peer.cert_file.empty() != peer.key_file.empty()) {
@@ -119,8 +141,9 @@ core::Result<std::shared_ptr<grpc::Channel>> connect(const Peer& peer) {
   arguments.SetMaxReceiveMessageSize(static_cast<int>(kMaxMessageBytes));
   // A megabyte may be unpacked to a thousand: gRPC looks at the length only then.
   arguments.SetInt(GRPC_ARG_ENABLE_PER_MESSAGE_DECOMPRESSION, 0);
-  arguments.SetInt(GRPC_ARG_KEEPALIVE_TIME_MS, kKeepaliveMs);
-  arguments.SetInt(GRPC_ARG_KEEPALIVE_TIMEOUT_MS, kKeepaliveTimeoutMs);
+  const Keepalive keepalive = notices == Notices::soon ? kSoon : kPatient;
+  arguments.SetInt(GRPC_ARG_KEEPALIVE_TIME_MS, keepalive.after_ms);
+  arguments.SetInt(GRPC_ARG_KEEPALIVE_TIMEOUT_MS, keepalive.timeout_ms);
   arguments.SetInt(GRPC_ARG_HTTP2_MAX_PINGS_WITHOUT_DATA, 0);
   arguments.SetInt(GRPC_ARG_INITIAL_RECONNECT_BACKOFF_MS, 200);
   // How long one attempt may take: a server that starts again has many handshakes to make.

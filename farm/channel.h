@@ -4,6 +4,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "core/base/result.h"
 
@@ -17,7 +18,8 @@ namespace hyades::farm {
 
 /// How a client or a worker reaches its coordinator.
 struct Peer {
-  std::string address = "127.0.0.1:7700";  ///< HOST:PORT
+  /// HOST:PORT, or those of several coordinators, of which one leads, with commas between.
+  std::string address = "127.0.0.1:7700";
   std::string ca_file;    ///< PEM: who signed the coordinator's certificate; empty: plaintext
   std::string cert_file;  ///< PEM, with key_file: shown to a coordinator that asks; empty: none
   std::string key_file;
@@ -41,6 +43,9 @@ struct Listen {
 /// the file.
 core::Result<std::string> read_token(const std::string& file);
 
+/// The addresses of Peer::address one by one; where a comma has nothing on a side, an empty one.
+std::vector<std::string> split_addresses(const std::string& text);
+
 /// Whether HOST:PORT stays on this machine: 127.x.y.z, [::1], localhost.
 bool is_loopback(const std::string& address);
 
@@ -48,12 +53,18 @@ bool is_loopback(const std::string& address);
 /// leaves this machine. What to tell people then; empty: it cannot.
 std::string plaintext_warning(const Peer& peer);
 
-/// A connection that reconnects by itself; the files of `peer` have been read, and certificates are
-/// read again when they change. Keepalive pings
-/// notice a dead peer within 30 s, also between calls. Thread-safe; nothing is contacted yet. An
+/// How soon keepalive pings notice that a peer is dead or frozen while it is called.
+enum class Notices {
+  patiently,  ///< within 30 s
+  soon        ///< within 4 s: another one may have taken its place
+};
+
+/// A connection that reconnects by itself, to a `peer` of one address; its files have been read,
+/// and certificates are read again when they change. Thread-safe; nothing is contacted yet. An
 /// error where a file is not what it should be, or plaintext would leave this machine without
 /// `insecure`.
-core::Result<std::shared_ptr<grpc::Channel>> connect(const Peer& peer);
+core::Result<std::shared_ptr<grpc::Channel>> connect(const Peer& peer,
+                                                     Notices notices = Notices::patiently);
 
 /// What is amiss with TLS where gRPC could not connect to `peer` and says `message`; nothing where
 /// it is something else.
@@ -79,6 +90,9 @@ struct Door {
 /// An error, which names the file if it is one's fault, where `listen` does not hold together, or
 /// where plaintext or an open door would be offered beyond this machine without `insecure`.
 core::Result<Door> open_door(const Listen& listen);
+
+/// Keepalive pings of a client must be so far apart, or the coordinator hangs up.
+inline constexpr std::chrono::milliseconds kLeastPingInterval{1000};
 
 /// The names of the metadata of every call.
 inline constexpr const char* kProtocolKey = "hyades-protocol";

@@ -57,4 +57,10 @@ bool is_retryable(const grpc::Status& status) {
   }
 }
 
+bool is_unanswered(const grpc::Status& status) {
+  const bool silence = status.error_code() == grpc::StatusCode::UNAVAILABLE ||
+                       status.error_code() == grpc::StatusCode::DEADLINE_EXCEEDED;
+  return silence && detail_of(status).retry_after_ms() == 0;
+}
+
 }  // namespace hyades::farm

@@ -33,4 +33,8 @@ v1::ErrorDetail detail_of(const grpc::Status& status);
 /// connection broke. docs/wire.md lists the codes.
 bool is_retryable(const grpc::Status& status);
 
+/// Whether that is because nothing answered, or did in time. Who names a time to come again has
+/// spoken.
+bool is_unanswered(const grpc::Status& status);
+
 }  // namespace hyades::farm

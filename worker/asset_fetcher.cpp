@@ -115,9 +115,9 @@ class AssetFetcher::FileClaim {
   bool mine_ = false;
 };
 
-AssetFetcher::AssetFetcher(std::shared_ptr<grpc::Channel> channel, std::string token,
+AssetFetcher::AssetFetcher(std::shared_ptr<farm::Channels> channels, std::string token,
                            farm::ContentStore& store, Listener& listener, milliseconds patience)
-    : channel_(std::move(channel)),
+    : channels_(std::move(channels)),
       store_(store),
       listener_(listener),
       patience_(patience),
@@ -360,8 +360,8 @@ AssetFetcher::Outcome AssetFetcher::download(Wanted& wanted, const v1::JobFile& 
   const grpc::internal::RpcMethod method(kDownloadMethod,
                                          grpc::internal::RpcMethod::SERVER_STREAMING);
   const std::unique_ptr<grpc::ClientReader<grpc::ByteBuffer>> stream(
-      grpc::internal::ClientReaderFactory<grpc::ByteBuffer>::Create(channel_.get(), method,
-                                                                    &context, request));
+      grpc::internal::ClientReaderFactory<grpc::ByteBuffer>::Create(
+          channels_->current().channel.get(), method, &context, request));
   grpc::ByteBuffer bytes;
   v1::Chunk chunk;
   int empty = 0;

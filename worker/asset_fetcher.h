@@ -17,14 +17,14 @@
 #include "core/base/mutex.h"
 #include "core/base/result.h"
 #include "farm/backoff.h"
+#include "farm/channels.h"
 #include "farm/content_store.h"
 #include "hyades/v1/common.pb.h"
 #include "worker/files_trouble.h"
 
 namespace grpc {
-class Channel;
 class ClientContext;
-}  // namespace grpc
+}
 
 namespace hyades::worker {
 
@@ -41,10 +41,11 @@ class AssetFetcher {
     virtual void files_failed(uint64_t job, const std::string& reason, FilesTrouble trouble) = 0;
   };
 
-  /// `store` and `listener` outlive the fetcher. A coordinator that cannot be reached is tried
-  /// again for `patience`, a cache that takes no file for some seconds.
-  AssetFetcher(std::shared_ptr<grpc::Channel> channel, std::string token, farm::ContentStore& store,
-               Listener& listener, std::chrono::milliseconds patience);
+  /// `store` and `listener` outlive the fetcher. It asks at the current one of `channels`; which
+  /// one that is others say, who see the coordinator's whole stream. A coordinator that cannot be
+  /// reached is tried again for `patience`, a cache that takes no file for some seconds.
+  AssetFetcher(std::shared_ptr<farm::Channels> channels, std::string token,
+               farm::ContentStore& store, Listener& listener, std::chrono::milliseconds patience);
   /// Breaks off what is being fetched.
   ~AssetFetcher();
   AssetFetcher(const AssetFetcher&) = delete;
@@ -109,7 +110,7 @@ class AssetFetcher {
     return stop_ || wanted.dropped;
   }
 
-  const std::shared_ptr<grpc::Channel> channel_;
+  const std::shared_ptr<farm::Channels> channels_;
   farm::ContentStore& store_;
   Listener& listener_;
   const std::chrono::milliseconds patience_;

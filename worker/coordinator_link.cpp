@@ -37,8 +37,8 @@ core::Result<v1::CoordinatorMessage> parse(const grpc::ByteBuffer& bytes) {
   return message;
 }
 
-StreamEnd meaning_of(grpc::StatusCode code) {
-  switch (code) {
+StreamEnd meaning_of(const grpc::Status& status) {
+  switch (status.error_code()) {
     case grpc::StatusCode::UNAUTHENTICATED:
       return StreamEnd::unknown;
     case grpc::StatusCode::PERMISSION_DENIED:
@@ -48,15 +48,11 @@ StreamEnd meaning_of(grpc::StatusCode code) {
     case grpc::StatusCode::ALREADY_EXISTS:
       return StreamEnd::id_taken;
     default:
-      return StreamEnd::broken;
+      return farm::is_unanswered(status) ? StreamEnd::unanswered : StreamEnd::broken;
   }
 }
 
 }  // namespace
-
-struct CoordinatorLink::Stub {
-  grpc::TemplatedGenericStub<v1::WorkerMessage, grpc::ByteBuffer> calls;
-};
 
 struct CoordinatorLink::State {
   Listener* listener = nullptr;
@@ -77,8 +73,9 @@ class CoordinatorLink::Stream
     farm::prepare(context_, state_->token, std::chrono::milliseconds(0));
   }
 
-  void start(Stub& stub) {
-    stub.calls.PrepareBidiStreamingCall(&context_, kMethod, {}, this);
+  void start(const std::shared_ptr<grpc::Channel>& channel) {
+    grpc::TemplatedGenericStub<v1::WorkerMessage, grpc::ByteBuffer> calls(channel);
+    calls.PrepareBidiStreamingCall(&context_, kMethod, {}, this);
     AddHold();  // what begins outside of reactions; let go of when the stream is broken
     StartRead(&incoming_);
     StartCall();
@@ -160,7 +157,7 @@ class CoordinatorLink::Stream
     const std::shared_ptr<State> state = state_;
     std::shared_ptr<Stream> self;
     std::string reason = status.ok() ? "it was closed" : status.error_message();
-    StreamEnd end = meaning_of(status.error_code());
+    StreamEnd end = meaning_of(status);
     {
       const core::MutexLock lock(mutex_);
       if (broken_off_) {
@@ -229,11 +226,8 @@ class CoordinatorLink::Stream
   std::optional<std::string> broken_off_ HYADES_GUARDED_BY(mutex_);  ///< by this side: why
 };
 
-CoordinatorLink::CoordinatorLink(const std::shared_ptr<grpc::Channel>& channel, std::string token,
-                                 Listener& listener)
-    : state_(std::make_shared<State>()),
-      stub_(std::make_unique<Stub>(
-          Stub{grpc::TemplatedGenericStub<v1::WorkerMessage, grpc::ByteBuffer>(channel)})) {
+CoordinatorLink::CoordinatorLink(std::string token, Listener& listener)
+    : state_(std::make_shared<State>()) {
   state_->token = std::move(token);
   state_->listener = &listener;
 }
@@ -249,14 +243,14 @@ void CoordinatorLink::set_token(std::string token) {
   state_->token = std::move(token);
 }
 
-void CoordinatorLink::open() {
+void CoordinatorLink::open(const std::shared_ptr<grpc::Channel>& channel) {
   const auto stream = std::make_shared<Stream>(state_);
   {
     const core::MutexLock lock(state_->mutex);
     state_->stream = stream;
     ++state_->live;
   }
-  stream->start(*stub_);
+  stream->start(channel);
 }
 
 void CoordinatorLink::send(v1::WorkerMessage message) {

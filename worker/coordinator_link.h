@@ -16,10 +16,11 @@ namespace hyades::worker {
 
 /// What the end of a stream means for the next one.
 enum class StreamEnd : uint8_t {
-  broken,   ///< another one is worth a try
-  unknown,  ///< the coordinator does not know the token
-  refused,  ///< another one would end the same way (a token of another role, version)
-  id_taken  ///< another process works under this worker's id: it needs a new one
+  broken,      ///< another one is worth a try
+  unanswered,  ///< nothing answered, or does no more: another address may
+  unknown,     ///< the coordinator does not know the token
+  refused,     ///< another one would end the same way (a token of another role, version)
+  id_taken     ///< another process works under this worker's id: it needs a new one
 };
 
 /// The stream to the coordinator, one at a time. Thread-safe.
@@ -37,8 +38,7 @@ class CoordinatorLink {
                               std::chrono::milliseconds retry_after) = 0;
   };
 
-  CoordinatorLink(const std::shared_ptr<grpc::Channel>& channel, std::string token,
-                  Listener& listener);
+  CoordinatorLink(std::string token, Listener& listener);
   /// Breaks an open stream off and waits for its end.
   ~CoordinatorLink();
   CoordinatorLink(const CoordinatorLink&) = delete;
@@ -48,7 +48,8 @@ class CoordinatorLink {
   void set_token(std::string token);
 
   /// Begins a stream; what is sent from now on waits until it is connected. Not while one is open.
-  void open();
+  /// `channel` outlives the link: gRPC's own threads cannot end it.
+  void open(const std::shared_ptr<grpc::Channel>& channel);
 
   /// Queues a message; nothing happens where no stream is open.
   void send(v1::WorkerMessage message);
@@ -79,9 +80,7 @@ class CoordinatorLink {
 
  private:
   class Stream;
-  struct Stub;
   std::shared_ptr<State> state_;
-  std::unique_ptr<Stub> stub_;  ///< not in the state: gRPC's own threads cannot end its channel
 };
 
 }  // namespace hyades::worker

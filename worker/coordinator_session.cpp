@@ -26,21 +26,27 @@ constexpr size_t kLongestName = 200;
 constexpr std::chrono::seconds kGoodStream{10};
 /// However long a coordinator asks not to be called.
 constexpr milliseconds kLongestAskedPause{60'000};
+/// What the first message of a stream may take where another address may answer instead; twice as
+/// much with each round in which none does, as one that answers may be slow.
+constexpr std::chrono::seconds kFirstWelcome{3};
+constexpr std::chrono::seconds kLongestWelcome{30};
 
 }  // namespace
 
 CoordinatorSession::CoordinatorSession(const WorkerContext& worker, WorkerIdentity id,
-                                       const std::shared_ptr<grpc::Channel>& channel,
-                                       WorkerToken token,
+                                       std::shared_ptr<farm::Channels> channels, WorkerToken token,
                                        std::function<void(const std::string&)> new_token)
     : worker_(worker),
       id_(std::move(id)),
       token_(std::move(token)),
       new_token_(std::move(new_token)),
-      link_(channel, token_.text(), *this) {}
+      channels_(std::move(channels)),
+      welcome_patience_(kFirstWelcome),
+      link_(token_.text(), *this) {}
 
 void CoordinatorSession::tick(TimePoint now, bool ready) {
   if (ever_connected_ ? connect_at_ && now >= *connect_at_ : ready) connect(now);
+  expect_welcome(now);
   tell_expiry(now);
 }
 
@@ -49,9 +55,20 @@ void CoordinatorSession::connect(TimePoint now) {
   ever_connected_ = true;
   streaming_ = true;
   broken_off_ = false;
+  unwelcome_ = false;
   welcomed_.reset();
-  link_.open();
+  way_ = channels_->current();
+  opened_ = now;
+  link_.open(way_.channel);
   worker_.machine.stream_opened(now);
+}
+
+/// A coordinator that is frozen takes the connection, and is silent.
+void CoordinatorSession::expect_welcome(TimePoint now) {
+  if (channels_->size() == 1 || !streaming_ || broken_off_ || welcomed_) return;
+  if (now - opened_ < welcome_patience_) return;
+  unwelcome_ = true;
+  break_off("it does not answer");
 }
 
 void CoordinatorSession::finish() {
@@ -90,14 +107,15 @@ bool CoordinatorSession::welcomed(const v1::Welcome& welcome) {
     return false;
   }
   told_trouble_.clear();
+  tls_trouble_.clear();
+  welcome_patience_ = kFirstWelcome;
   ever_welcomed_ = true;
   unknown_since_.reset();
   const std::string name = farm::wire_text(welcome.name()).substr(0, kLongestName);
   worker_.log.rename(name);
   if (!welcome.machine_token().empty()) keep_token(welcome.machine_token());
   token_term_ = {welcome.token_expires_ms(), welcome.token_warn_ms()};
-  worker_.log.note(LogLevel::info,
-                   fmt::format("working for {} as {}", worker_.options.coordinator.address, name));
+  worker_.log.note(LogLevel::info, fmt::format("working for {} as {}", way_.address, name));
   return true;
 }
 
@@ -121,11 +139,20 @@ void CoordinatorSession::ended(StreamEnd end, const std::string& reason, millise
   }
   if (end == StreamEnd::id_taken) renew_id();
   // Who welcomes and hangs up at once is not called all the time.
-  if (welcomed_ && Clock::now() - *welcomed_ >= kGoodStream) backoff_.reset();
-  const Duration pause = backoff_.next(std::min<Duration>(retry_after, kLongestAskedPause));
-  connect_at_ = Clock::now() + pause;
+  if (welcomed_ && Clock::now() - *welcomed_ >= kGoodStream) {
+    backoff_.reset();
+    channels_->answered();
+  }
+  const bool another = has_another_address(end);
+  connect_at_ = Clock::now();
+  if (!another) *connect_at_ += backoff_.next(std::min<Duration>(retry_after, kLongestAskedPause));
   std::string trouble = farm::connection_trouble(reason, worker_.options.coordinator);
-  if (finished_ || trouble == told_trouble_) return;
+  const auto tls = farm::tls_trouble(reason, worker_.options.coordinator);
+  if (another && tls) tls_trouble_ = way_.address + ": " + *tls;
+  // Of a round in which no address answers one thing is told: that a coordinator stands by, and is
+  // silent, says less than what is amiss with TLS.
+  if (!another && !tls_trouble_.empty()) trouble = std::exchange(tls_trouble_, {});
+  if (finished_ || (another && !welcomed_) || trouble == told_trouble_) return;
   worker_.log.note(
       LogLevel::warning,
       fmt::format("no connection to {} ({}); {} in hand, {} not acknowledged; trying again",
@@ -133,6 +160,14 @@ void CoordinatorSession::ended(StreamEnd end, const std::string& reason, millise
                   core::counted(worker_.machine.in_hand(), "unit"),
                   core::counted(worker_.machine.unacknowledged(), "film")));
   told_trouble_ = std::move(trouble);
+}
+
+/// Whether the stream ended for lack of an answer, and the next address is worth a try at once.
+bool CoordinatorSession::has_another_address(StreamEnd end) {
+  if (end != StreamEnd::unanswered && !unwelcome_) return false;
+  const bool another = channels_->failed(way_);
+  if (!another) welcome_patience_ = std::min<Duration>(2 * welcome_patience_, kLongestWelcome);
+  return another;
 }
 
 /// There are two with one id, and the other was first.

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "farm/backoff.h"
+#include "farm/channels.h"
 #include "farm/token_term.h"
 #include "worker/coordinator_link.h"
 #include "worker/worker_context.h"
@@ -22,7 +23,7 @@ class CoordinatorSession : private CoordinatorLink::Listener {
  public:
   /// `new_token` is told of a token that comes in place of the first.
   CoordinatorSession(const WorkerContext& worker, WorkerIdentity id,
-                     const std::shared_ptr<grpc::Channel>& channel, WorkerToken token,
+                     std::shared_ptr<farm::Channels> channels, WorkerToken token,
                      std::function<void(const std::string&)> new_token);
 
   /// Opens a stream where it is time for one: the first when the rendering child is `ready`.
@@ -55,14 +56,21 @@ class CoordinatorSession : private CoordinatorLink::Listener {
   void show_token();
   bool may_hope();
   void tell_expiry(TimePoint now);
+  void expect_welcome(TimePoint now);
+  bool has_another_address(StreamEnd end);
 
   const WorkerContext worker_;
   WorkerIdentity id_;
   WorkerToken token_;
   const std::function<void(const std::string&)> new_token_;
+  const std::shared_ptr<farm::Channels> channels_;
+  farm::Channels::Way way_;  ///< of the last stream
+  TimePoint opened_;         ///< when that began
+  Duration welcome_patience_;
   farm::Backoff backoff_{farm::kFirstReconnect, farm::kLongestReconnect};
   bool streaming_ = false;
   bool broken_off_ = false;            ///< what still comes on this stream is not heard
+  bool unwelcome_ = false;             ///< ... as nothing answered in time
   std::optional<TimePoint> welcomed_;  ///< when, on this stream
   bool ever_connected_ = false;
   bool ever_welcomed_ = false;
@@ -70,6 +78,7 @@ class CoordinatorSession : private CoordinatorLink::Listener {
   std::optional<TimePoint> connect_at_;
   std::optional<TimePoint> unknown_since_;  ///< the coordinator does not know the token any more
   std::string told_trouble_;
+  std::string tls_trouble_;  ///< of an address, in this round
   farm::TokenTerm token_term_;
   std::optional<TimePoint> told_expiry_;
   CoordinatorLink link_;  ///< last: its threads post

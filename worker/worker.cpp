@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "core/base/random_id.h"
+#include "farm/channels.h"
 #include "farm/content_store.h"
 #include "farm/log.h"
 #include "farm/tags.h"
@@ -43,8 +44,8 @@ int run_worker(const WorkerOptions& options, const volatile std::sig_atomic_t& s
     return status;
   };
   constexpr int kWrongInput = 2;
-  auto channel = farm::connect(options.coordinator);
-  if (!channel) return refuse(channel.error(), kWrongInput);
+  auto channels = farm::Channels::open(options.coordinator);
+  if (!channels) return refuse(channels.error(), kWrongInput);
   if (const std::string warning = farm::plaintext_warning(options.coordinator); !warning.empty()) {
     farm::log(farm::LogLevel::warning, warning);
   }
@@ -63,7 +64,7 @@ int run_worker(const WorkerOptions& options, const volatile std::sig_atomic_t& s
   if (auto read = token.read(id->text()); !read) return refuse(read.error(), kWrongInput);
   const auto instance = core::random_id();
   if (!instance) return refuse(instance.error());
-  return work(options, std::move(*id), *instance, *channel, std::move(token), **store, signals);
+  return work(options, std::move(*id), *instance, *channels, std::move(token), **store, signals);
 }
 
 }  // namespace hyades::worker

@@ -57,7 +57,7 @@ StateMachineOptions machine_options(const WorkerOptions& options, const WorkerId
 class Worker : private WorkerPorts {
  public:
   Worker(const WorkerOptions& options, WorkerIdentity id, const std::string& instance,
-         const std::shared_ptr<grpc::Channel>& channel, WorkerToken token,
+         const std::shared_ptr<farm::Channels>& channels, WorkerToken token,
          farm::ContentStore& store)
       : options_(options),
         name_(options.name.empty() ? host_name() : options.name),
@@ -65,8 +65,8 @@ class Worker : private WorkerPorts {
         machine_(machine_options(options, id, instance, name_), *this),
         renderer_(context()),
         fetched_(context()),
-        fetcher_(channel, token.text(), store, fetched_, kFetchPatience),
-        session_(context(), std::move(id), channel, std::move(token),
+        fetcher_(channels, token.text(), store, fetched_, kFetchPatience),
+        session_(context(), std::move(id), channels, std::move(token),
                  [this](const std::string& renewed) { fetcher_.set_token(renewed); }),
         departure_(context(), renderer_, session_, Clock::now()) {}
 
@@ -120,9 +120,9 @@ class Worker : private WorkerPorts {
 }  // namespace
 
 int work(const WorkerOptions& options, WorkerIdentity id, const std::string& instance,
-         std::shared_ptr<grpc::Channel> channel, WorkerToken token, farm::ContentStore& store,
+         std::shared_ptr<farm::Channels> channels, WorkerToken token, farm::ContentStore& store,
          const volatile std::sig_atomic_t& signals) {
-  Worker worker(options, std::move(id), instance, channel, std::move(token), store);
+  Worker worker(options, std::move(id), instance, channels, std::move(token), store);
   return worker.run(signals);
 }
 

@@ -4,14 +4,11 @@
 #include <memory>
 #include <string>
 
+#include "farm/channels.h"
 #include "farm/content_store.h"
 #include "worker/worker.h"
 #include "worker/worker_identity.h"
 #include "worker/worker_token.h"
-
-namespace grpc {
-class Channel;
-}
 
 namespace hyades::worker {
 
@@ -20,7 +17,7 @@ std::string host_name();
 
 /// What run_worker does once all is opened. `instance` is random, of this process.
 int work(const WorkerOptions& options, WorkerIdentity id, const std::string& instance,
-         std::shared_ptr<grpc::Channel> channel, WorkerToken token, farm::ContentStore& store,
+         std::shared_ptr<farm::Channels> channels, WorkerToken token, farm::ContentStore& store,
          const volatile std::sig_atomic_t& signals);
 
 }  // namespace hyades::worker

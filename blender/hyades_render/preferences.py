@@ -30,7 +30,8 @@ class HyadesPreferences(bpy.types.AddonPreferences):
     )
     farm_address: StringProperty(
         name="Farm",
-        description="http(s)://HOST:PORT of the farm's dashboard; empty: what the variable HYADES_HTTP says",
+        description="http(s)://HOST:PORT of the farm's dashboard, of several coordinators all, with commas between; "
+        "empty: what the variable HYADES_HTTP says, or HYADES_COORDINATOR",
     )
     token_file: StringProperty(
         name="Token File", description="The file that holds your token for the farm", subtype="FILE_PATH"

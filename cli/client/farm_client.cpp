@@ -40,6 +40,17 @@ std::vector<std::string> hex_of(const v1::ErrorDetail& detail) {
   return names;
 }
 
+/// Seconds without a first answer. Of several coordinators for a moment none leads.
+double first_patience(const ClientOptions& options, size_t addresses) {
+  constexpr double kUntilAnotherLeads = 15.0;
+  if (addresses == 1) return options.first_patience;
+  return std::max(options.first_patience, std::min(kUntilAnotherLeads, options.later_patience));
+}
+
+std::string cannot_speak(const std::string& address, const std::string& tls_trouble) {
+  return fmt::format("cannot speak with the coordinator at {}: {}", address, tls_trouble);
+}
+
 grpc::Status call_once(const std::shared_ptr<grpc::Channel>& channel, grpc::ClientContext& context,
                        const char* method, const google::protobuf::Message& request,
                        google::protobuf::Message& response) {
@@ -55,31 +66,39 @@ grpc::Status call_once(const std::shared_ptr<grpc::Channel>& channel, grpc::Clie
 }  // namespace
 
 FarmClient::FarmClient(const ClientOptions& options, std::string token,
-                       std::shared_ptr<grpc::Channel> channel)
+                       std::shared_ptr<farm::Channels> channels)
     : options_(options),
       token_(std::move(token)),
-      channel_(std::move(channel)),
-      patience_(options.first_patience, options.later_patience),
+      channels_(std::move(channels)),
+      way_(channels_->current()),
+      patience_(first_patience(options, channels_->size()), options.later_patience),
       room_(options.later_patience, options.later_patience) {}
 
 Result<std::unique_ptr<FarmClient>> FarmClient::open(const ClientOptions& options) {
   auto token = farm::read_token(options.peer.token_file);
   if (!token) return token.error();
-  auto channel = farm::connect(options.peer);
-  if (!channel) return channel.error();
-  return std::unique_ptr<FarmClient>(new FarmClient(options, *token, *channel));
+  auto channels = farm::Channels::open(options.peer);
+  if (!channels) return channels.error();
+  return std::unique_ptr<FarmClient>(new FarmClient(options, *token, *channels));
+}
+
+const std::shared_ptr<grpc::Channel>& FarmClient::channel() {
+  way_ = channels_->current();
+  return way_.channel;
 }
 
 void FarmClient::reached() {
   patience_.reached();
   told_ = false;
+  tls_trouble_.clear();
 }
 
 std::string FarmClient::no_answer(const std::string& reason) const {
   const std::string& address = options_.peer.address;
   if (const auto tls = farm::tls_trouble(reason, options_.peer)) {
-    return fmt::format("cannot speak with the coordinator at {}: {}", address, *tls);
+    return cannot_speak(way_.address, *tls);
   }
+  if (!tls_trouble_.empty()) return tls_trouble_;
   const std::string trouble = farm::connection_trouble(reason, options_.peer);
   if (patience_.was_reached()) {
     return fmt::format("the coordinator at {} answers no more ({})", address, trouble);
@@ -109,16 +128,14 @@ Failure FarmClient::failure(const grpc::Status& status) const {
                                     : " (the token is that of " + options_.peer.token_file + ")";
       break;
     case grpc::StatusCode::UNIMPLEMENTED:
-      out.message = "the coordinator at " + options_.peer.address + " cannot do this: it is older";
+      out.message = "the coordinator at " + way_.address + " cannot do this: it is older";
       break;
     case grpc::StatusCode::DATA_LOSS:
       out.damaged = true;
       break;
     case grpc::StatusCode::UNAVAILABLE:
     case grpc::StatusCode::DEADLINE_EXCEEDED:
-      // Where a time is named the coordinator has spoken itself: what is asked for is not there
-      // yet.
-      if (farm::detail_of(status).retry_after_ms() != 0) break;
+      if (!farm::is_unanswered(status)) break;  // what is asked for is not there yet
       out.code = kNoAnswer;
       out.message = no_answer(status.error_message());
       break;
@@ -132,6 +149,11 @@ Failure FarmClient::failure(const grpc::Status& status) const {
 
 bool FarmClient::wait_after(const grpc::Status& status) {
   if (!farm::is_retryable(status)) return false;
+  if (farm::is_unanswered(status) && channels_->failed(way_)) {
+    const auto tls = farm::tls_trouble(status.error_message(), options_.peer);
+    if (tls) tls_trouble_ = cannot_speak(way_.address, *tls);
+    return true;
+  }
   const double asked = farm::detail_of(status).retry_after_ms() * 1e-3;
   const bool no_room = status.error_code() == grpc::StatusCode::RESOURCE_EXHAUSTED;
   const double wait = (no_room ? room_ : patience_).next_wait(Patience::Clock::now(), asked);
@@ -156,6 +178,7 @@ Outcome FarmClient::persist(milliseconds timeout,
     const grpc::Status status = once(context);
     if (status.ok()) {
       reached();
+      channels_->answered();
       if (refused) room_.reached();
       return std::nullopt;
     }
@@ -167,7 +190,7 @@ Outcome FarmClient::persist(milliseconds timeout,
 Outcome FarmClient::call(const char* method, const google::protobuf::Message& request,
                          google::protobuf::Message& response, milliseconds timeout) {
   return persist(timeout, [&](grpc::ClientContext& context) {
-    return call_once(channel_, context, method, request, response);
+    return call_once(channel(), context, method, request, response);
   });
 }
 
@@ -176,7 +199,7 @@ Outcome FarmClient::stream(const char* method, const google::protobuf::Message& 
                            milliseconds timeout, const OnMessage& on_message,
                            const Outcome& stopped) {
   Outcome outcome = persist(timeout, [&](grpc::ClientContext& context) {
-    ByteCall call(channel_, context, method);
+    ByteCall call(channel(), context, method);
     (void)call.write(request, true);
     Message message;
     while (call.read(message)) {
@@ -194,7 +217,7 @@ Outcome FarmClient::stream(const char* method, const google::protobuf::Message& 
 Failure FarmClient::too_much(const char* what) const {
   return {kFailed,
           fmt::format("the coordinator at {} sends {} of more than half of the memory here, {}",
-                      options_.peer.address, what, core::format_bytes(options_.most_bytes))};
+                      way_.address, what, core::format_bytes(options_.most_bytes))};
 }
 
 Outcome FarmClient::count_part(const google::protobuf::Message& part, uint64_t& bytes) const {
@@ -306,7 +329,7 @@ Outcome FarmClient::upload(const core::AssetRecord& file, std::istream& input, u
 
   grpc::ClientContext context;
   farm::prepare(context, token_, transfer_time(file.size));
-  ByteCall call(channel_, context, "Assets/Upload");
+  ByteCall call(channel(), context, "Assets/Upload");
   v1::UploadPart part;
   part.set_sha256(farm::to_wire(*digest));
   part.set_size(file.size);
@@ -332,6 +355,7 @@ Outcome FarmClient::upload(const core::AssetRecord& file, std::istream& input, u
   const grpc::Status status = call.finish();
   if (status.ok()) {
     reached();
+    channels_->answered();
     room_.reached();
     return std::nullopt;
   }
@@ -351,7 +375,7 @@ Outcome FarmClient::create_token(const v1::CreateTokenRequest& request,
   if (Outcome failed = call("Admin/WhoAmI", v1::WhoAmIRequest(), me)) return failed;
   grpc::ClientContext context;
   farm::prepare(context, token_, kShortCall);
-  const grpc::Status status = call_once(channel_, context, "Admin/CreateToken", request, response);
+  const grpc::Status status = call_once(channel(), context, "Admin/CreateToken", request, response);
   return status.ok() ? Outcome() : failure(status);
 }
 

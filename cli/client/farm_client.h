@@ -20,6 +20,7 @@
 #include "core/base/result.h"
 #include "core/film/film_codec.h"
 #include "farm/channel.h"
+#include "farm/channels.h"
 #include "hyades/v1/admin.pb.h"
 #include "hyades/v1/assets.pb.h"
 #include "hyades/v1/farm.pb.h"
@@ -39,7 +40,8 @@ struct ClientOptions {
 
 /// The coordinator as the commands see it: what is worth another try is tried again, with jittered
 /// backoff, until it succeeds or patience ends; every call has a deadline or (streams that follow
-/// something) keepalive. Streams that break go on where they were. One thread at a time.
+/// something) keepalive. Where it has several addresses each is tried before that is waited for.
+/// Streams that break go on where they were. One thread at a time.
 class FarmClient {
  public:
   static constexpr std::chrono::seconds kShortCall{20};
@@ -100,8 +102,10 @@ class FarmClient {
 
  private:
   FarmClient(const ClientOptions& options, std::string token,
-             std::shared_ptr<grpc::Channel> channel);
+             std::shared_ptr<farm::Channels> channels);
 
+  /// Where the next try goes.
+  const std::shared_ptr<grpc::Channel>& channel();
   void reached();
   std::string no_answer(const std::string& reason) const;
   Failure too_much(const char* what) const;
@@ -120,7 +124,11 @@ class FarmClient {
 
   const ClientOptions options_;
   const std::string token_;
-  const std::shared_ptr<grpc::Channel> channel_;
+  const std::shared_ptr<farm::Channels> channels_;
+  farm::Channels::Way way_;  ///< of the last try
+  /// Of an address, as it is told where no other one answers: that a coordinator stands by, and is
+  /// silent, is no reason.
+  std::string tls_trouble_;
   Patience patience_;
   std::function<void(const std::string&)> tell_;
   bool told_ = false;  ///< that the coordinator is gone

@@ -22,7 +22,6 @@ namespace {
 
 constexpr int kKeepaliveMs = 20'000;
 constexpr int kKeepaliveTimeoutMs = 10'000;
-constexpr int kLeastPingIntervalMs = 5'000;
 constexpr std::chrono::milliseconds kLastWords{200};
 /// What has come over all connections and is not dealt with yet: beyond it windows close, and then
 /// calls are broken off.
@@ -87,7 +86,7 @@ core::Result<std::unique_ptr<Server>> Server::start(const farm::Door& door, Cont
   builder.AddChannelArgument(GRPC_ARG_KEEPALIVE_TIME_MS, kKeepaliveMs);
   builder.AddChannelArgument(GRPC_ARG_KEEPALIVE_TIMEOUT_MS, kKeepaliveTimeoutMs);
   builder.AddChannelArgument(GRPC_ARG_HTTP2_MIN_RECV_PING_INTERVAL_WITHOUT_DATA_MS,
-                             kLeastPingIntervalMs);
+                             static_cast<int>(farm::kLeastPingInterval.count()));
   builder.AddChannelArgument(GRPC_ARG_KEEPALIVE_PERMIT_WITHOUT_CALLS, 1);
   builder.AddChannelArgument(GRPC_ARG_MAX_CONCURRENT_STREAMS, kMostCalls);
   // Keepalive keeps what is answered at the other end, and anybody may answer.

@@ -167,7 +167,7 @@ class ConnectionOver final : public Connection,
     if (const grpc::Status framed = check_framing(header); !framed.ok()) {
       return send_away(error_reply(framed));
     }
-    auto target = parse_target(std::string(header.target()));
+    auto target = parse_target(request_.target);
     if (!target) {
       return send_away(
           error_reply({grpc::StatusCode::INVALID_ARGUMENT, "the address makes no sense"}));

@@ -20,6 +20,7 @@ namespace hyades::coordinator {
 /// A request as handlers see it, whatever connection it came by.
 struct WebRequest {
   std::string method;                             ///< GET, POST, PUT, DELETE (HEAD comes as GET)
+  std::string target;                             ///< path and query as they came
   std::vector<std::string> path;                  ///< decoded, without the slashes
   std::map<std::string, std::string> query;       ///< decoded; of a name given twice the last one
   std::map<std::string, std::string> parameters;  ///< what the route's {names} stand for

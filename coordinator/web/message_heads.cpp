@@ -28,6 +28,7 @@ std::optional<uint64_t> length_of(const WebReply& reply) {
 WebRequest request_of(const RequestHead& head) {
   WebRequest request;
   request.method = head.method() == http::verb::head ? "GET" : std::string(head.method_string());
+  request.target = std::string(head.target());
   for (const auto& field : head) {
     const std::string name(field.name_string());
     request.headers[core::lower_case(name)] = std::string(field.value());

@@ -61,6 +61,11 @@ class Page {
   std::vector<prometheus::MetricFamily> families_;
 };
 
+void add_leads(Page& page, bool leads) {
+  page.gauge("hyades_coordinator_leads",
+             "1 where this coordinator leads the farm, 0 where it stands by", leads ? 1 : 0);
+}
+
 void add_workers(Page& page, const std::vector<v1::Worker>& workers) {
   std::map<std::string, uint64_t> states;
   for (const char* state : {"active", "draining", "quarantined", "gone"}) states[state] = 0;
@@ -149,6 +154,7 @@ std::string metrics_text(Controller& controller) {
   page.gauge("hyades_build_info", "1, with the version", 1, {{"version", info.version()}});
   page.gauge("hyades_start_time_seconds", "When the coordinator started, since 1970",
              static_cast<double>(info.started_ms()) / 1000);
+  add_leads(page, true);
   page.gauge("hyades_trouble",
              "1 where something keeps the coordinator from storing what it is given",
              info.trouble().empty() ? 0 : 1);
@@ -161,11 +167,16 @@ std::string metrics_text(Controller& controller) {
 
 }  // namespace
 
+std::string standby_metrics() {
+  Page page;
+  add_leads(page, false);
+  return page.text();
+}
+
 void add_metrics(Router& router, Controller& controller, Executors& executors) {
   router.add("GET", "/metrics", [&](const WebRequest& request, const Answer& answer) {
-    answer_by(executors, "GET /metrics", request.caller, answer, [&controller] {
-      return text_reply(metrics_text(controller), "text/plain; version=0.0.4; charset=utf-8");
-    });
+    answer_by(executors, "GET /metrics", request.caller, answer,
+              [&controller] { return text_reply(metrics_text(controller), kMetricsType); });
   });
 }
 

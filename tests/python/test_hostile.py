@@ -5,6 +5,7 @@ import json
 import os
 import pathlib
 import re
+import socket
 import tempfile
 import time
 import unittest
@@ -261,6 +262,188 @@ class Calls(unittest.TestCase):
     def test_events_are_read_as_the_standard_has_them(self) -> None:
         lines = [b":\n", b"\n", b"event: a\r\n", b'data: {"x":\n', b"data: 1}\n", b"id: 7\n", b"\n", b"data: 2\n", b"\n", b"event: b\n", b"data: 3\n"]
         self.assertEqual(list(parse_events(lines)), [("a", {"x": 1}), ("message", 2)])
+
+
+class Clock:
+    """Time that passes only where somebody waits."""
+
+    def __init__(self) -> None:
+        self.now = 0.0
+
+    def monotonic(self) -> float:
+        return self.now
+
+    def sleep(self, seconds: float) -> None:
+        self.now += seconds
+
+
+class Coordinators(unittest.TestCase):
+    """Several that stand by for one another."""
+
+    INFO = ok({"version": "1", "jobs": 5})
+    NOBODY = 503, {"Retry-After": "1"}, json.dumps({"error": {"code": "unavailable", "message": "none leads at the moment", "retry_after_ms": 1000}}).encode()
+
+    def setUp(self) -> None:
+        self.clock = Clock()
+        patch = mock.patch.object(hyades.farm.http, "time", self.clock)
+        patch.start()
+        self.addCleanup(patch.stop)
+
+    def leader(self) -> FakeFarm:
+        return FakeFarm(self, lambda request: self.INFO)
+
+    def stand_by(self, leader: str) -> FakeFarm:
+        return FakeFarm(self, lambda request: (307, {"Location": leader + request.path}, b""))
+
+    def dead(self) -> str:
+        """Where connections are refused."""
+        with socket.create_server(("127.0.0.1", 0)) as taken:
+            return f"127.0.0.1:{taken.getsockname()[1]}"
+
+    def test_the_one_that_leads_is_found_without_a_wait_and_kept(self) -> None:
+        leader = self.leader()
+        stand_by = self.stand_by(leader.address)
+        farm = hyades.Farm(f"{self.dead()}, {stand_by.address},{leader.address}", token="secret", patience=5)
+        for _ in range(3):
+            self.assertEqual(farm.info()["jobs"], 5)
+        self.assertEqual((len(stand_by.requests), len(leader.requests)), (1, 3))
+        self.assertEqual(self.clock.now, 0.0)
+        self.assertEqual(leader.requests[0].headers["Authorization"], "Bearer secret")
+        self.assertEqual((farm.dashboard(), f"http://{farm._http.place}/"), (leader.address + "/",) * 2)
+
+    def test_one_that_does_not_answer_is_passed_over_soon(self) -> None:
+        full = socket.create_server(("127.0.0.1", 0), backlog=0)
+        self.addCleanup(full.close)
+        for _ in range(3):  # who comes after these hears nothing
+            waiting = socket.socket()
+            waiting.setblocking(False)
+            waiting.connect_ex(full.getsockname())
+            self.addCleanup(waiting.close)
+        address = f"127.0.0.1:{full.getsockname()[1]},{self.leader().address}"
+        begin = time.monotonic()
+        with mock.patch.object(hyades.farm.http, "_SOON", 0.2):
+            self.assertEqual(hyades.Farm(address, patience=5).info()["jobs"], 5)
+        self.assertLess(time.monotonic() - begin, 5)
+
+    def test_the_lead_may_pass_to_another_one(self) -> None:
+        leads = "a"
+
+        def of(name: str) -> FakeFarm:
+            return FakeFarm(self, lambda request: self.INFO if leads == name else (307, {"Location": "http://127.0.0.1:9/"}, b""))
+
+        a, b = of("a"), of("b")
+        farm = hyades.Farm(f"{a.address},{b.address}", patience=5)
+        for leads in "abba":
+            self.assertEqual(farm.info()["jobs"], 5)
+        self.assertEqual((len(a.requests), len(b.requests)), (3, 3))
+        self.assertEqual(self.clock.now, 0.0)
+
+    def test_a_moment_without_one_that_leads_is_waited_for(self) -> None:
+        for nobody in (self.NOBODY, (307, {"Location": "http://127.0.0.1:9/"}, b""), None):
+            with self.subTest(nobody):
+                answers = [nobody] * 3 + [self.INFO]
+                a, b = FakeFarm(self, lambda request: nobody), FakeFarm(self, lambda request: answers.pop(0))
+                self.assertEqual(hyades.Farm(f"{a.address},{b.address}", patience=60).info()["jobs"], 5)
+                self.assertEqual((len(a.requests), len(b.requests)), (4, 4))
+                self.assertGreater(self.clock.now, 2.25 if nobody is self.NOBODY else 0.5)
+
+    def test_patience_has_an_end(self) -> None:
+        one, two = (f"http://{self.dead()}" for _ in range(2))
+        # Waits double from 0.1 s on, by a quarter more or less.
+        for address, patience, least, most in ((one, 300, 1, 3), (f"{one},{two}", 300, 6, 15), (f"{one},{two}", 2, 0.5, 2), (f"{one},{one}/", 300, 1, 3)):
+            with self.subTest(address=address, patience=patience):
+                self.clock.now = 0.0
+                with self.assertRaises(hyades.FarmError) as caught:
+                    hyades.Farm(address, patience=patience).info()
+                self.assertEqual(caught.exception.code, "unavailable")
+                self.assertEqual(str(caught.exception).count("no coordinator answers"), 2 if two in address else 1)
+                self.assertTrue(least < self.clock.now < 1.25 * most, self.clock.now)
+        # One that has answered may come back.
+        answers = [self.INFO]
+        gone = FakeFarm(self, lambda request: answers.pop() if answers else None)
+        farm = hyades.Farm(f"{gone.address},{one}", patience=100)
+        farm.info()
+        self.clock.now = 0.0
+        with self.assertRaises(hyades.FarmError):
+            farm.info()
+        self.assertGreater(self.clock.now, 80)
+
+    def test_nobody_is_asked_who_was_not_named(self) -> None:
+        stranger = self.leader()
+        one, two = self.stand_by(stranger.address), self.stand_by(stranger.address)
+        for address, code in ((f"{one.address},{two.address}", "moved"), (f"{one.address},{self.dead()}", "unavailable")):
+            with self.assertRaisesRegex(hyades.FarmError, f"{one.address[7:]} stands by, and the one at {stranger.address} leads") as caught:
+                hyades.Farm(address, token="secret", patience=5).info()
+            self.assertEqual(caught.exception.code, code)
+        self.assertEqual(stranger.requests, [])
+
+    def test_what_the_one_that_leads_refuses_is_refused(self) -> None:
+        refused = 403, {}, json.dumps({"error": {"code": "permission_denied", "message": "a viewer may not"}}).encode()
+        busy = 429, {}, json.dumps({"error": {"code": "resource_exhausted", "message": "too much", "retry_after_ms": 500}}).encode()
+        for answer, words, times in ((refused, "^a viewer may not$", 1), (busy, "^too much$", 3)):
+            leader = FakeFarm(self, lambda request: answer)
+            stand_by = self.stand_by(leader.address)
+            with self.assertRaisesRegex(hyades.FarmError, words):
+                hyades.Farm(f"{stand_by.address},{leader.address}", patience=2).info()
+            self.assertGreaterEqual(len(leader.requests), times)
+
+    def test_a_stand_by_alone_says_at_once_which_one_leads(self) -> None:
+        for location, words in (
+            ("https://b.example:8080/api/v1/info", "stands by, and the one at https://b.example:8080 leads"),
+            ("http://u:p@[::1]/", r"stands by, and the one at http://\[::1\] leads"),
+            ("http://b\x1bc.example", r"at http://b\?c.example leads"),
+            ("/elsewhere", r"sends elsewhere \(status 307\), which is not followed"),
+            ("http://b:x/", "sends elsewhere"),
+            ("http://[/", "sends elsewhere"),
+        ):
+            fake = FakeFarm(self, lambda request: (307, {"Location": location}, b""))
+            with self.subTest(location), self.assertRaisesRegex(hyades.FarmError, words) as caught:
+                hyades.Farm(fake.address, patience=5).info()
+            self.assertEqual((caught.exception.code, len(fake.requests), self.clock.now), ("moved", 1, 0.0))
+
+    def test_each_address_has_to_be_right(self) -> None:
+        with self.assertRaisesRegex(ValueError, "farm.example.*insecure=True"):
+            hyades.Farm("http://127.0.0.1:8080,http://farm.example:8080", token="secret")
+        hyades.Farm("http://127.0.0.1:8080,http://farm.example:8080", insecure=True)
+        for address in ("a:1,", ",a:1", "a:1,,b:1", "a:1,ftp://b", "a:1;b:1"):
+            with self.subTest(address), self.assertRaisesRegex(ValueError, "expected http"):
+                hyades.Farm(address, insecure=True)
+
+    def test_the_environment_names_them_as_it_does_for_workers(self) -> None:
+        leader = self.leader()
+        port = urlsplit(leader.address).port
+        for variables in (
+            {"HYADES_COORDINATOR": "127.0.0.2:7700,127.0.0.1:7700"},
+            {"HYADES_COORDINATOR": "127.0.0.1:7700"},
+            {"HYADES_HTTP": f"{self.dead()},{leader.address}", "HYADES_COORDINATOR": "127.0.0.2:7700"},
+        ):
+            with self.subTest(variables), mock.patch.dict(os.environ, variables), mock.patch.object(hyades.farm.http, "_DEFAULT_PORT", port):
+                self.assertEqual(hyades.Farm(patience=0).info()["jobs"], 5)
+
+    def test_what_one_has_begun_another_one_ends(self) -> None:
+        cut = Serves(output("a.exr"), cut=1000)
+        taken: list = []  # the lead, once part of the file has come
+        job = {"id": 1, "name": "a", "state": "done", "samples": 1, "samples_done": 1}
+        event = b"event: end\ndata: " + json.dumps({"job": job, "frames": []}).encode() + b"\n\n"
+
+        def first(request: Request):
+            if taken:
+                return 307, {"Location": "http://127.0.0.1:9/"}, b""
+            if "/outputs/" in request.path:
+                taken.append(request)
+            return cut(request) if not request.path.endswith("/events") else (200, {}, b"data: 1")
+
+        def second(request: Request):
+            return (200, {}, event) if request.path.endswith("/events") else Serves(output("a.exr"))(request)
+
+        a, b = FakeFarm(self, first), FakeFarm(self, second)
+        farm = hyades.Farm(f"{a.address},{b.address}", patience=5)
+        with tempfile.TemporaryDirectory() as folder:
+            (path,) = farm.fetch(1, folder)
+            self.assertEqual(path.read_bytes(), CONTENT)
+        self.assertEqual([r.headers["Range"] for r in b.requests if "/outputs/" in r.path], ["bytes=1000-"])
+        farm = hyades.Farm(f"{a.address},{b.address}", patience=5)
+        self.assertEqual([change.job.state for change in farm.watch(1)], ["done"])
 
 
 class Bounds(unittest.TestCase):

@@ -7,14 +7,13 @@
 #include <fstream>
 #include <iterator>
 
-#include <grpcpp/create_channel.h>
-#include <grpcpp/security/credentials.h>
 #include <grpcpp/security/server_credentials.h>
 #include <grpcpp/server.h>
 #include <grpcpp/server_builder.h>
 #include <gtest/gtest.h>
 
 #include "core/base/hash.h"
+#include "farm/channels.h"
 #include "farm/wire.h"
 #include "hyades/v1/assets.grpc.pb.h"
 #include "tests/support/temp_folder.h"
@@ -118,6 +117,12 @@ v1::JobSpec spec_of(const std::string& bytes) {
   return spec;
 }
 
+std::shared_ptr<farm::Channels> channels_to(int port) {
+  farm::Peer peer;
+  peer.address = "127.0.0.1:" + std::to_string(port);
+  return *farm::Channels::open(peer);
+}
+
 struct Served {
   Served() {
     grpc::ServerBuilder builder;
@@ -129,10 +134,7 @@ struct Served {
   Served(const Served&) = delete;
   Served& operator=(const Served&) = delete;
 
-  std::shared_ptr<grpc::Channel> channel() const {
-    return grpc::CreateChannel("127.0.0.1:" + std::to_string(port),
-                               grpc::InsecureChannelCredentials());
-  }
+  std::shared_ptr<farm::Channels> channels() const { return channels_to(port); }
 
   StuckAssets assets;
   int port = 0;
@@ -145,7 +147,7 @@ TEST(AssetFetcher, AReleasedJobIsBrokenOffAndNotReported) {
   const auto store = farm::ContentStore::open({folder.file("cache"), 0});
   ASSERT_TRUE(store.ok());
   Reports reports;
-  AssetFetcher fetcher(served.channel(), "", **store, reports, seconds(60));
+  AssetFetcher fetcher(served.channels(), "", **store, reports, seconds(60));
   fetcher.fetch(1, spec_of("something large"));
   fetcher.fetch(2, spec_of("something else that never comes"));
   ASSERT_TRUE(served.assets.wait_until_stuck(2));
@@ -172,7 +174,7 @@ TEST(AssetFetcher, AFileThatIsDoubtedIsFetchedAgainWhereItIsDamaged) {
   const std::string path = folder.file("cache/" + name);
   {
     Reports reports;
-    AssetFetcher fetcher(served.channel(), "", **store, reports, seconds(60));
+    AssetFetcher fetcher(served.channels(), "", **store, reports, seconds(60));
     fetcher.fetch(1, spec_of(small));
     ASSERT_EQ(reports.first().at(0).second, "there");
   }
@@ -182,7 +184,7 @@ TEST(AssetFetcher, AFileThatIsDoubtedIsFetchedAgainWhereItIsDamaged) {
   std::filesystem::last_write_time(path, written);
   ASSERT_TRUE((*store)->contains(name, small.size())) << "nobody has noticed";
   Reports reports;
-  AssetFetcher fetcher(served.channel(), "", **store, reports, seconds(60));
+  AssetFetcher fetcher(served.channels(), "", **store, reports, seconds(60));
   fetcher.recheck(name);
   fetcher.fetch(2, spec_of(small));
   ASSERT_EQ(reports.first().at(0).second, "there");
@@ -198,7 +200,7 @@ TEST(AssetFetcher, AFileThatDoesNotComeHoldsUpNobodyElse) {
   const auto store = farm::ContentStore::open({folder.file("cache"), 0});
   ASSERT_TRUE(store.ok());
   Reports reports;
-  AssetFetcher fetcher(served.channel(), "", **store, reports, seconds(60));
+  AssetFetcher fetcher(served.channels(), "", **store, reports, seconds(60));
   fetcher.fetch(1, spec_of("something large"));
   fetcher.fetch(2, spec_of("something else that never comes"));
   ASSERT_TRUE(served.assets.wait_until_stuck(2));
@@ -217,7 +219,7 @@ TEST(AssetFetcher, AFileThatTheCacheHasNoRoomForIsItsJobsTrouble) {
   const auto store = farm::ContentStore::open({folder.file("cache"), kSmall.size() - 1});
   ASSERT_TRUE(store.ok());
   Reports reports;
-  AssetFetcher fetcher(served.channel(), "", **store, reports, std::chrono::milliseconds(100));
+  AssetFetcher fetcher(served.channels(), "", **store, reports, std::chrono::milliseconds(100));
   fetcher.fetch(1, spec_of(kSmall));
   const auto said = reports.first();
   ASSERT_EQ(said.size(), 1U);
@@ -230,7 +232,7 @@ TEST(AssetFetcher, AFileOfAnotherLengthThanTheJobSaysIsItsJobsTrouble) {
   const auto store = farm::ContentStore::open({folder.file("cache"), 0});
   ASSERT_TRUE(store.ok());
   Reports reports;
-  AssetFetcher fetcher(served.channel(), "", **store, reports, std::chrono::milliseconds(100));
+  AssetFetcher fetcher(served.channels(), "", **store, reports, std::chrono::milliseconds(100));
   v1::JobSpec spec = spec_of(kSmall);
   spec.mutable_files(0)->set_size(kSmall.size() - 1);
   fetcher.fetch(1, spec);
@@ -249,7 +251,7 @@ TEST(AssetFetcher, ACacheThatCannotBeWrittenIsTheMachinesTrouble) {
   ASSERT_TRUE(store.ok());
   std::filesystem::remove_all(folder.file("cache"));
   Reports reports;
-  AssetFetcher fetcher(served.channel(), "", **store, reports, std::chrono::milliseconds(100));
+  AssetFetcher fetcher(served.channels(), "", **store, reports, std::chrono::milliseconds(100));
   fetcher.fetch(1, spec_of(kSmall));
   const std::string said = reports.next();
   EXPECT_TRUE(said.starts_with("machine: file: ")) << said;
@@ -262,7 +264,7 @@ TEST(AssetFetcher, ACacheThatIsMendedSoonIsTriedAgain) {
   ASSERT_TRUE(store.ok());
   std::filesystem::rename(folder.file("cache"), folder.file("elsewhere"));
   Reports reports;
-  AssetFetcher fetcher(served.channel(), "", **store, reports, seconds(60));
+  AssetFetcher fetcher(served.channels(), "", **store, reports, seconds(60));
   fetcher.fetch(1, spec_of(kSmall));
   std::this_thread::sleep_for(std::chrono::milliseconds(250));
   std::filesystem::rename(folder.file("elsewhere"), folder.file("cache"));
@@ -296,9 +298,7 @@ class EndlessAssets : public v1::Assets::Service {
     const auto store = farm::ContentStore::open({folder.file("cache"), 0});
     EXPECT_TRUE(store.ok());
     Reports reports;
-    AssetFetcher fetcher(grpc::CreateChannel("127.0.0.1:" + std::to_string(port_),
-                                             grpc::InsecureChannelCredentials()),
-                         "", **store, reports, seconds(60));
+    AssetFetcher fetcher(channels_to(port_), "", **store, reports, seconds(60));
     v1::JobSpec spec = spec_of(kSmall);
     spec.mutable_files(0)->set_size(size);
     fetcher.fetch(1, spec);
@@ -367,7 +367,7 @@ TEST(AssetFetcher, AJobOfMoreFilesThanMayBeOpenIsHopeless) {
   ASSERT_TRUE(store.ok());
   const FewOpenFiles few(400);
   Reports reports;
-  AssetFetcher fetcher(served.channel(), "", **store, reports, seconds(60));
+  AssetFetcher fetcher(served.channels(), "", **store, reports, seconds(60));
   v1::JobSpec large;
   for (int i = 0; i < 201; ++i) *large.add_files() = spec_of(std::to_string(i)).files(0);
   fetcher.fetch(1, large);
@@ -388,7 +388,7 @@ TEST(AssetFetcher, FilesThatJobsShareAreOpenOnce) {
   for (const v1::JobFile& file : some.files()) *twice.add_files() = file;
   const FewOpenFiles few(400);
   Reports reports;
-  AssetFetcher fetcher(served.channel(), "", **store, reports, seconds(60));
+  AssetFetcher fetcher(served.channels(), "", **store, reports, seconds(60));
   const auto get = [&](uint64_t job, const v1::JobSpec& spec) {
     fetcher.fetch(job, spec);
     return reports.next();

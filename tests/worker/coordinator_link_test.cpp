@@ -18,7 +18,9 @@
 #include <grpcpp/server.h>
 #include <grpcpp/server_builder.h>
 
+#include "farm/channels.h"
 #include "hyades/v1/work.grpc.pb.h"
+#include "tests/support/relay.h"
 
 namespace hyades::worker {
 namespace {
@@ -34,6 +36,7 @@ class Talker : public v1::Work::Service {
     builder.AddListeningPort("127.0.0.1:0", grpc::InsecureServerCredentials(), &port_);
     builder.RegisterService(this);
     server_ = builder.BuildAndStart();
+    channel_ = grpc::CreateChannel(address(), grpc::InsecureChannelCredentials());
   }
   ~Talker() override { server_->Shutdown(std::chrono::system_clock::now()); }
   Talker(const Talker&) = delete;
@@ -46,10 +49,8 @@ class Talker : public v1::Work::Service {
     while (!context->IsCancelled()) std::this_thread::sleep_for(std::chrono::milliseconds(5));
     return grpc::Status::OK;
   }
-  std::shared_ptr<grpc::Channel> channel() const {
-    return grpc::CreateChannel("127.0.0.1:" + std::to_string(port_),
-                               grpc::InsecureChannelCredentials());
-  }
+  std::string address() const { return "127.0.0.1:" + std::to_string(port_); }
+  const std::shared_ptr<grpc::Channel>& channel() const { return channel_; }
 
   std::atomic<size_t> written{0};
 
@@ -58,6 +59,7 @@ class Talker : public v1::Work::Service {
   const size_t times_;
   int port_ = 0;
   std::unique_ptr<grpc::Server> server_;
+  std::shared_ptr<grpc::Channel> channel_;
 };
 
 class Listener : public CoordinatorLink::Listener {
@@ -67,9 +69,10 @@ class Listener : public CoordinatorLink::Listener {
     ++said_;
     changed_.notify_all();
   }
-  void stream_ended(StreamEnd /*end*/, const std::string& reason,
+  void stream_ended(StreamEnd how, const std::string& reason,
                     std::chrono::milliseconds /*retry_after*/) override {
     const std::lock_guard lock(mutex_);
+    how_ = how;
     end_ = reason;
     changed_.notify_all();
   }
@@ -86,11 +89,17 @@ class Listener : public CoordinatorLink::Listener {
     changed_.wait_for(lock, seconds(60), [this] { return !end_.empty(); });
     return end_;
   }
+  /// After wait_for_end().
+  StreamEnd how() const {
+    const std::lock_guard lock(mutex_);
+    return how_;
+  }
 
  private:
   mutable std::mutex mutex_;
   std::condition_variable changed_;
   size_t said_ = 0;
+  StreamEnd how_ = StreamEnd::broken;
   std::string end_;
 };
 
@@ -106,8 +115,8 @@ TEST(CoordinatorLink, IsReadOnlyAsItIsHeard) {
                                      : CoordinatorLink::kMostUnheardBytes / bytes + 1;
     const Talker coordinator(brief_of(bytes), 1000);
     Listener listener;
-    CoordinatorLink link(coordinator.channel(), "", listener);
-    link.open();
+    CoordinatorLink link("", listener);
+    link.open(coordinator.channel());
     ASSERT_TRUE(listener.wait_for(most));
     std::this_thread::sleep_for(std::chrono::milliseconds(300));
     EXPECT_EQ(listener.said(), most);
@@ -125,8 +134,8 @@ TEST(CoordinatorLink, IsReadOnlyAsItIsHeard) {
 TEST(CoordinatorLink, IsBrokenOffThoughNobodyReads) {
   const Talker coordinator(brief_of(10), 1'000'000);
   Listener listener;
-  CoordinatorLink link(coordinator.channel(), "", listener);
-  link.open();
+  CoordinatorLink link("", listener);
+  link.open(coordinator.channel());
   ASSERT_TRUE(listener.wait_for(CoordinatorLink::kMostUnheard));
   link.break_off("enough of this");
   EXPECT_EQ(listener.wait_for_end(), "enough of this");
@@ -136,8 +145,8 @@ TEST(CoordinatorLink, EndsWhileItIsNotRead) {
   const Talker coordinator(brief_of(10), 1'000'000);
   Listener listener;
   {
-    CoordinatorLink link(coordinator.channel(), "", listener);
-    link.open();
+    CoordinatorLink link("", listener);
+    link.open(coordinator.channel());
     ASSERT_TRUE(listener.wait_for(CoordinatorLink::kMostUnheard));
   }
   EXPECT_FALSE(listener.wait_for_end().empty());
@@ -149,10 +158,57 @@ TEST(CoordinatorLink, AMessageOfTooManyPartsEndsTheStream) {
   for (int i = 0; i < 300'000; ++i) message.mutable_job()->mutable_spec()->add_files();
   const Talker coordinator(message, 1);
   Listener listener;
-  CoordinatorLink link(coordinator.channel(), "", listener);
-  link.open();
+  CoordinatorLink link("", listener);
+  link.open(coordinator.channel());
   EXPECT_NE(listener.wait_for_end().find("too many parts"), std::string::npos);
   EXPECT_EQ(listener.said(), 0U);
+}
+
+TEST(CoordinatorLink, TellsWhetherAnybodyAnswered) {
+  const test::Relay silent;
+  farm::Peer peer;
+  peer.address = "127.0.0.1:1," + silent.address();
+  const auto nobody = farm::Channels::open(peer);
+  ASSERT_TRUE(nobody.ok());
+  for (size_t i = 0; i < 2; ++i) {
+    const auto begin = std::chrono::steady_clock::now();
+    Listener listener;
+    CoordinatorLink link("", listener);
+    const farm::Channels::Way way = (*nobody)->current();
+    link.open(way.channel);
+    EXPECT_FALSE(listener.wait_for_end().empty());
+    EXPECT_EQ(listener.how(), StreamEnd::unanswered) << way.address;
+    EXPECT_LT(std::chrono::steady_clock::now() - begin, seconds(8)) << way.address;
+    (*nobody)->failed(way);
+  }
+  const Talker coordinator(brief_of(10), 1);
+  Listener listener;
+  CoordinatorLink link("", listener);
+  link.open(coordinator.channel());
+  ASSERT_TRUE(listener.wait_for(1));
+  link.break_off("enough of this");
+  listener.wait_for_end();
+  EXPECT_EQ(listener.how(), StreamEnd::broken);
+}
+
+/// The kernel of its machine goes on to take what is sent.
+TEST(CoordinatorLink, NoticesSoonThatACoordinatorIsFrozenWhereThereAreOthers) {
+  const Talker coordinator(brief_of(10), 1);
+  test::Relay relay(coordinator.address());
+  farm::Peer peer;
+  peer.address = relay.address() + ",127.0.0.1:1";
+  const auto channels = farm::Channels::open(peer);
+  ASSERT_TRUE(channels.ok());
+  Listener listener;
+  CoordinatorLink link("", listener);
+  link.open((*channels)->current().channel);
+  ASSERT_TRUE(listener.wait_for(1));
+  link.heard();
+  relay.freeze();
+  const auto begin = std::chrono::steady_clock::now();
+  EXPECT_FALSE(listener.wait_for_end().empty());
+  EXPECT_EQ(listener.how(), StreamEnd::unanswered);
+  EXPECT_LT(std::chrono::steady_clock::now() - begin, seconds(8)) << "4 s, on a busy machine";
 }
 
 }  // namespace

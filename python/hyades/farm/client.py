@@ -34,8 +34,9 @@ WorkerId: TypeAlias = "int | WorkerState"
 class Farm:
     """A coordinator, by its HTTP API: `Farm("https://farm.example:8080", token="...", ca="ca.pem")`.
 
-    address: http(s)://HOST:PORT of its dashboard. Without it, the environment variable HYADES_HTTP;
-    without that, port 8080 of the machine that HYADES_COORDINATOR names, or of this one.
+    address: http(s)://HOST:PORT of its dashboard; of several coordinators that stand by for one another all, with
+    commas between: the one that leads is found. Without it, the environment variable HYADES_HTTP; without
+    that, port 8080 of the machines that HYADES_COORDINATOR names, or of this one.
     token: without it, what stands in the file that HYADES_TOKEN_FILE names.
     ca: certificate (PEM) of who signed the coordinator's (HYADES_TLS_CA); turns TLS on.
     certificate: files (PEM) of a certificate and its key (HYADES_TLS_CERT, HYADES_TLS_KEY).
@@ -58,12 +59,13 @@ class Farm:
         self._http = Http(address, token, ca, certificate, insecure, patience)
 
     def __repr__(self) -> str:
-        return f"Farm({self._http.host}:{self._http.port})"
+        return f"Farm({self._http.place})"
 
     def dashboard(self, job: JobId | None = None) -> str:
         """The address of its dashboard, or of a job's page there, for people."""
-        host = f"[{self._http.host}]" if ":" in self._http.host else self._http.host
-        page = f"{'https' if self._http.secure else 'http'}://{host}:{self._http.port}/"
+        place = self._http.place
+        host = f"[{place.host}]" if ":" in place.host else place.host
+        page = f"{'https' if place.secure else 'http'}://{host}:{place.port}/"
         return page if job is None else f"{page}#/jobs/{_id(job)}"
 
     # Jobs.

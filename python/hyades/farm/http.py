@@ -1,4 +1,4 @@
-"""Calls to a coordinator: where it is, who calls, and what is tried again."""
+"""Calls to a coordinator: where it is, or those that stand by for it, who calls, and what is tried again."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ import time
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager, suppress
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import Any, NamedTuple, TypeVar
 from urllib.parse import urlencode, urlsplit
 
 from ..errors import FarmError
@@ -22,6 +22,8 @@ from .answers import MOST_JSON, decoded, part, read_bounded
 
 _T = TypeVar("_T")
 _FIRST_PATIENCE = 3.0  # seconds, for a coordinator that has never answered
+_FIRST_PATIENCE_OF_SEVERAL = 15.0  # none of them leads for a moment when the one that led is gone
+_SOON = 5.0  # seconds to connect to one of several: another may have taken its place
 _LONGEST_WAIT = 5.0
 _LONGEST_CALL = 300.0  # seconds; 64 MB of JSON over a slow line
 _AGAIN = (502, 503, 504)
@@ -29,8 +31,20 @@ _DEFAULT_PORT = 8080
 _NETWORK = (OSError, http.client.HTTPException)
 
 
+class Place(NamedTuple):
+    """Where a coordinator answers."""
+
+    secure: bool
+    host: str
+    port: int
+
+    def __str__(self) -> str:
+        return f"{self.host}:{self.port}"
+
+
 class Http:
-    """HTTP/1.1 to one coordinator. Redirects are never followed: the token is for nobody else."""
+    """HTTP/1.1 to the one of some coordinators that leads. Redirects are never followed, they only say that it is
+    another one: the token is for nobody whom the user has not named."""
 
     def __init__(
         self,
@@ -43,15 +57,21 @@ class Http:
     ) -> None:
         environment = os.environ
         ca = ca or environment.get("HYADES_TLS_CA")
-        self.secure, self.host, self.port = _place(address or _default_address(), ca is not None)
-        if not self.secure and not insecure and not is_loopback(self.host):
-            raise ValueError(
-                f"{self.host} is another machine: expected https:// and ca=, or insecure=True to send plain text"
-            )
-        self._tls = _tls_context(ca, certificate) if self.secure else None
+        named = (address or _default_address()).split(",")
+        self._places = list(dict.fromkeys(_place(one.strip(), ca is not None) for one in named))
+        for place in self._places:
+            if not place.secure and not insecure and not is_loopback(place.host):
+                raise ValueError(
+                    f"{place.host} is another machine: expected https:// and ca=, or insecure=True to send plain text"
+                )
+        self.place = self._places[0]
+        """The current one: that which has answered last, or whose turn it is."""
+        self._tls = _tls_context(ca, certificate) if any(place.secure for place in self._places) else None
         self._token = token if token is not None else _token_of_file(environment.get("HYADES_TOKEN_FILE"))
         self.has_token = bool(self._token)
         self._patience = patience
+        self._several = len(self._places) > 1
+        self._first_patience = min(patience, _FIRST_PATIENCE_OF_SEVERAL if self._several else _FIRST_PATIENCE)
         self._reached = False
 
     def call(
@@ -71,7 +91,6 @@ class Http:
 
         def once() -> Any:
             connection = self._connection(timeout)
-            connection.connect()
             with _ended_after(connection.sock, _LONGEST_CALL):
                 with self._answer(connection, method, path, query, body, headers) as answer:
                     data = read_bounded(answer, MOST_JSON)
@@ -80,29 +99,47 @@ class Http:
         return self.patiently(once)
 
     def patiently(self, once: Callable[[], _T], reached: Callable[[], object] = lambda: None) -> _T:
-        """`once`, again and again while there is hope: a coordinator that was there may restart.
+        """`once`, again and again while there is hope: a coordinator that was there may restart, or another one
+        take the lead. Of several each has its turn before a wait, and the one that answers stays the current one.
         Whenever `reached` tells something new, patience begins anew."""
         deadline, wait, mark = None, 0.1, reached()
+        failures: list[FarmError] = []  # of this round
         while True:
+            place = self.place
             try:
                 result = once()
                 self._reached = True
                 return result
             except ssl.SSLCertVerificationError as error:
-                raise FarmError("untrusted", f"{self.host} cannot be trusted: {error}") from None
+                raise FarmError("untrusted", f"{place.host} cannot be trusted: {error}") from None
+            except _Elsewhere as elsewhere:
+                failure = elsewhere.error
+                if not self._several:
+                    raise failure from None
             except _Again as again:
                 failure, self._reached = again.error, True
                 wait = max(wait, again.after)
             except _NETWORK as error:
-                failure = FarmError("unavailable", f"no coordinator answers at {self.host}:{self.port}: {error}")
+                failure = FarmError("unavailable", f"no coordinator answers at {place}: {error}")
             now = time.monotonic()
             if reached() != mark:
                 deadline, wait, mark = None, 0.1, reached()
-            deadline = deadline or now + (self._patience if self._reached else min(self._patience, _FIRST_PATIENCE))
+                failures = []
+            failures.append(failure)
+            self._pass_on(place)
+            if len(failures) < len(self._places):
+                continue
+            deadline = deadline or now + (self._patience if self._reached else self._first_patience)
             if now + wait > deadline:
-                raise failure from None
+                raise _failure_of_all(failures) from None
             time.sleep(wait * random.uniform(0.75, 1.25))
             wait = min(2 * wait, _LONGEST_WAIT)
+            failures = []
+
+    def _pass_on(self, place: Place) -> None:
+        """It is the next one's turn, unless another thread has said so."""
+        if self.place == place:
+            self.place = self._places[(self._places.index(place) + 1) % len(self._places)]
 
     @contextmanager
     def open(
@@ -136,15 +173,22 @@ class Http:
             connection.request(method, path, body, {**known, **(headers or {})})
             answer = connection.getresponse()
             if answer.status not in (200, 201, 202, 204, 206):
-                raise _failure(answer)
+                raise _failure(answer, f"{connection.host}:{connection.port}")
             yield answer
         finally:
             connection.close()
 
     def _connection(self, timeout: float) -> http.client.HTTPConnection:
-        if self._tls is None:
-            return http.client.HTTPConnection(self.host, self.port, timeout=timeout)
-        return http.client.HTTPSConnection(self.host, self.port, timeout=timeout, context=self._tls)
+        """One to the current coordinator, which is there."""
+        place, soon = self.place, min(timeout, _SOON) if self._several else timeout
+        if place.secure:
+            secure = http.client.HTTPSConnection(place.host, place.port, timeout=soon, context=self._tls)
+            connection: http.client.HTTPConnection = secure
+        else:
+            connection = http.client.HTTPConnection(place.host, place.port, timeout=soon)
+        connection.connect()
+        connection.sock.settimeout(timeout)
+        return connection
 
 
 @contextmanager
@@ -173,6 +217,14 @@ class _Again(Exception):
         self.after = after
 
 
+class _Elsewhere(Exception):
+    """An answer that says: another one leads."""
+
+    def __init__(self, error: FarmError) -> None:
+        super().__init__(str(error))
+        self.error = error
+
+
 def is_loopback(host: str) -> bool:
     try:
         return ipaddress.ip_address(host).is_loopback
@@ -180,10 +232,10 @@ def is_loopback(host: str) -> bool:
         return host == "localhost"
 
 
-def _failure(answer: http.client.HTTPResponse) -> Exception:
-    """What an answer that is no success says."""
+def _failure(answer: http.client.HTTPResponse, place: str) -> Exception:
+    """What an answer that is no success says, of who answers at `place`."""
     if 300 <= answer.status < 400:
-        return FarmError("moved", f"the coordinator sends elsewhere (status {answer.status}), which is not followed")
+        return _Elsewhere(FarmError("moved", _sent_on(place, answer.status, answer.getheader("Location", ""))))
     data = answer.read(1 << 20)
     said: dict[str, Any]
     try:
@@ -199,6 +251,31 @@ def _failure(answer: http.client.HTTPResponse) -> Exception:
     return error
 
 
+def _sent_on(place: str, status: int, location: str) -> str:
+    """What a redirect says; that of a stand-by names the coordinator that leads."""
+    try:
+        parts = urlsplit(location)
+        host, port = parts.hostname, parts.port
+    except ValueError:
+        host, port = None, None
+    if status != 307 or not host or parts.scheme not in ("http", "https"):
+        return f"the coordinator at {place} sends elsewhere (status {status}), which is not followed"
+    leader = (f"[{host}]" if ":" in host else host) + (f":{port}" if port else "")
+    return (
+        f"the coordinator at {place} stands by, and the one at {parts.scheme}://{leader[:300]} leads: name that one, "
+        "or all of them with commas between (it is not followed by itself)"
+    )
+
+
+def _failure_of_all(failures: list[FarmError]) -> FarmError:
+    """What a round over all coordinators has come to: what the one that leads has answered, or why none has."""
+    for failure in failures:
+        if failure.code not in ("moved", "unavailable") or len(failures) == 1:
+            return failure
+    code = "unavailable" if any(failure.code == "unavailable" for failure in failures) else "moved"
+    return FarmError(code, "; ".join(dict.fromkeys(str(failure) for failure in failures)))
+
+
 def _wait_asked(milliseconds: Any) -> float:
     """Seconds; 0 where it is no time to wait."""
     good = isinstance(milliseconds, (int, float)) and milliseconds > 0
@@ -206,15 +283,15 @@ def _wait_asked(milliseconds: Any) -> float:
 
 
 def _default_address() -> str:
-    """HYADES_HTTP; else the machine that HYADES_COORDINATOR names, or this one, at the usual port."""
+    """HYADES_HTTP; else the machines that HYADES_COORDINATOR names, or this one, at the usual port."""
     if address := os.environ.get("HYADES_HTTP"):
         return address
-    coordinator = os.environ.get("HYADES_COORDINATOR", "127.0.0.1:7700")
-    return f"{coordinator.rpartition(':')[0] or coordinator}:{_DEFAULT_PORT}"
+    coordinators = os.environ.get("HYADES_COORDINATOR", "127.0.0.1:7700").split(",")
+    return ",".join(f"{one.rpartition(':')[0] or one}:{_DEFAULT_PORT}" for one in coordinators)
 
 
-def _place(address: str, secure: bool) -> tuple[bool, str, int]:
-    """https?, host and port of "https://farm.example:8080", "farm.example:8080" or "[::1]:8080"."""
+def _place(address: str, secure: bool) -> Place:
+    """That of "https://farm.example:8080", "farm.example:8080" or "[::1]:8080"."""
     text = address if "://" in address else f"{'https' if secure else 'http'}://{address}"
     try:
         parts = urlsplit(text)
@@ -224,7 +301,7 @@ def _place(address: str, secure: bool) -> tuple[bool, str, int]:
     good = host and parts.scheme in ("http", "https") and parts.path in ("", "/") and not parts.query
     if not good or parts.username is not None:
         raise ValueError(f"the coordinator's address is '{address}', expected http(s)://HOST:PORT")
-    return parts.scheme == "https", str(host), port or _DEFAULT_PORT
+    return Place(parts.scheme == "https", str(host), port or _DEFAULT_PORT)
 
 
 def _tls_context(ca: str | os.PathLike[str] | None, certificate: tuple[str, str] | None) -> ssl.SSLContext:

@@ -45,7 +45,8 @@ class FakeCoordinator {
 
   uint32_t lease_ms = 10'000;
   uint32_t protocol = farm::kProtocol;
-  size_t twins = 0;  ///< so many Hellos more are told that another process has their id
+  size_t twins = 0;     ///< so many Hellos more are told that another process has their id
+  bool silent = false;  ///< hears Hellos and says nothing
   bool acknowledge = true;
   std::string token;  ///< that workers have to show; empty: none. To be changed while it is stopped
   bool answer_failures = true;  ///< a failed unit is leased again
