@@ -8,15 +8,14 @@
 #include <filesystem>
 #include <fstream>
 #include <ios>
+#include <memory>
 #include <optional>
 #include <span>
 #include <system_error>
 #include <thread>
 
-#include <sqlite3.h>
-
 #include "coordinator/backup/read_file.h"
-#include "coordinator/job_store/database.h"
+#include "coordinator/sql/sqlite.h"
 #include "core/base/hash.h"
 
 namespace hyades::coordinator {
@@ -77,12 +76,12 @@ core::Result<bool> copy_once(const std::string& from, const std::string& to,
 core::Status join(const std::string& path) {
   sqlite3* raw = nullptr;
   const int code = sqlite3_open_v2(path.c_str(), &raw, SQLITE_OPEN_READWRITE, nullptr);
-  const Database db(raw);
+  SqliteConnection db{std::unique_ptr<sqlite3, CloseSqlite>(raw)};
   if (code != SQLITE_OK) return core::Error{path + ": " + sqlite3_errstr(code)};
   for (const char* pragma : {"PRAGMA locking_mode=EXCLUSIVE", "PRAGMA journal_mode=DELETE"}) {
-    if (auto done = Query(raw, pragma).run(); !done) return done.error().in(path);
+    if (auto done = Query(db, pragma).run(); !done) return done.error().in(path);
   }
-  Query check(raw, "PRAGMA integrity_check");
+  Query check(db, "PRAGMA integrity_check");
   const bool whole = check.next() && check.bytes(0) == "ok";
   if (auto status = check.status(); !status) return status.error().in(path);
   if (!whole) return core::Error{path + ": the job store is damaged"};

@@ -6,8 +6,8 @@
 
 #include <fmt/format.h>
 
-#include "coordinator/job_store/database.h"
 #include "coordinator/job_store/removals.h"
+#include "coordinator/sql/connection.h"
 #include "core/base/hash.h"
 
 namespace hyades::coordinator {
@@ -50,7 +50,7 @@ bool had_part(const std::string& worker, uint64_t since, uint64_t moment,
 
 }  // namespace
 
-core::Status store_contributors(sqlite3* db, uint64_t job, const StoredFrame& frame) {
+core::Status store_contributors(SqlConnection& db, uint64_t job, const StoredFrame& frame) {
   if (frame.parts.empty()) return {};
   return Query(db, "INSERT INTO parts (job, frame, moment, workers) VALUES (?, ?, ?, ?)")
       .bind(static_cast<int64_t>(job))
@@ -60,7 +60,7 @@ core::Status store_contributors(sqlite3* db, uint64_t job, const StoredFrame& fr
       .run();
 }
 
-core::Result<bool> find_frames_of(sqlite3* db, const std::string& worker, uint64_t since,
+core::Result<bool> find_frames_of(SqlConnection& db, const std::string& worker, uint64_t since,
                                   FrameOfJob& last, uint32_t limit,
                                   std::vector<FrameOfJob>& found) {
   Query rows(db,
@@ -78,7 +78,7 @@ core::Result<bool> find_frames_of(sqlite3* db, const std::string& worker, uint64
   return looked == limit;
 }
 
-core::Result<std::vector<SuspectFrames>> make_suspect(sqlite3* db, const std::string& worker,
+core::Result<std::vector<SuspectFrames>> make_suspect(SqlConnection& db, const std::string& worker,
                                                       uint64_t since,
                                                       std::vector<FrameOfJob> frames) {
   std::sort(frames.begin(), frames.end());
@@ -91,21 +91,23 @@ core::Result<std::vector<SuspectFrames>> make_suspect(sqlite3* db, const std::st
     if (core::Status status = row.status(); !status) return status.error();
     if (!had) continue;
     Query suspect(db,
-                  "UPDATE frames SET doubtful = 1 WHERE job = ? AND frame = ? AND NOT doubtful");
+                  "UPDATE frames SET doubtful = 1 WHERE job = ? AND frame = ? AND doubtful = 0");
     suspect.bind(number(one.job)).bind(int64_t{one.frame});
     if (core::Status done = suspect.run(); !done) return done.error();
-    if (sqlite3_changes(db) == 0) continue;
+    if (suspect.changed() == 0) continue;
     if (jobs.empty() || jobs.back().job != one.job) jobs.push_back({one.job, {}});
     jobs.back().frames.push_back(one.frame);
   }
   return jobs;
 }
 
-core::Status store_trust(sqlite3* db, const std::vector<StoredTrust>& workers) {
+core::Status store_trust(SqlConnection& db, const std::vector<StoredTrust>& workers) {
   Transaction transaction(db);
   if (core::Status begun = transaction.status(); !begun) return begun;
   for (const StoredTrust& worker : workers) {
-    core::Status done = Query(db, "INSERT OR REPLACE INTO trusted (worker, moment) VALUES (?, ?)")
+    core::Status done = Query(db,
+                              "INSERT INTO trusted (worker, moment) VALUES (?, ?) "
+                              "ON CONFLICT (worker) DO UPDATE SET moment = excluded.moment")
                             .bind(worker.worker)
                             .bind(static_cast<int64_t>(worker.moment))
                             .run();
@@ -121,7 +123,7 @@ core::Status store_trust(sqlite3* db, const std::vector<StoredTrust>& workers) {
   return transaction.commit();
 }
 
-core::Result<std::vector<StoredTrust>> read_trust(sqlite3* db) {
+core::Result<std::vector<StoredTrust>> read_trust(SqlConnection& db) {
   std::vector<StoredTrust> workers;
   Query rows(db, "SELECT worker, moment FROM trusted ORDER BY worker");
   while (rows.next()) workers.push_back({rows.bytes(0), static_cast<uint64_t>(rows.integer(1))});

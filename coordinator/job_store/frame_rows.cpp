@@ -6,12 +6,12 @@
 #include <fmt/format.h>
 
 #include "coordinator/job_store/contributor_rows.h"
-#include "coordinator/job_store/database.h"
 #include "coordinator/job_store/removals.h"
+#include "coordinator/sql/connection.h"
 
 namespace hyades::coordinator {
 
-core::Result<std::vector<StoredFrame>> read_frames(sqlite3* db, uint64_t job,
+core::Result<std::vector<StoredFrame>> read_frames(SqlConnection& db, uint64_t job,
                                                    std::optional<int32_t> after, uint32_t limit) {
   Query rows(db,
              "SELECT frame, done, reason, class, restarts, doubtful, black FROM frames "
@@ -35,9 +35,9 @@ core::Result<std::vector<StoredFrame>> read_frames(sqlite3* db, uint64_t job,
 
 namespace {
 
-/// Frames of which the column `mark` says something, in order, at most `limit`.
-core::Result<std::vector<int32_t>> read_marked(sqlite3* db, const std::string& mark, uint64_t job,
-                                               uint32_t limit) {
+/// Frames of which `mark` holds, in order, at most `limit`.
+core::Result<std::vector<int32_t>> read_marked(SqlConnection& db, const std::string& mark,
+                                               uint64_t job, uint32_t limit) {
   Query rows(db, "SELECT frame FROM frames WHERE job = ?1 AND " + mark + kJobIsThere +
                      "ORDER BY frame LIMIT ?2");
   rows.bind(number(job)).bind(int64_t{limit});
@@ -49,15 +49,17 @@ core::Result<std::vector<int32_t>> read_marked(sqlite3* db, const std::string& m
 
 }  // namespace
 
-core::Result<std::vector<int32_t>> read_suspect_frames(sqlite3* db, uint64_t job, uint32_t limit) {
-  return read_marked(db, "doubtful", job, limit);
+core::Result<std::vector<int32_t>> read_suspect_frames(SqlConnection& db, uint64_t job,
+                                                       uint32_t limit) {
+  return read_marked(db, "doubtful <> 0", job, limit);
 }
 
-core::Result<std::vector<int32_t>> read_black(sqlite3* db, uint64_t job, uint32_t limit) {
-  return read_marked(db, "black", job, limit);
+core::Result<std::vector<int32_t>> read_black(SqlConnection& db, uint64_t job, uint32_t limit) {
+  return read_marked(db, "black <> 0", job, limit);
 }
 
-core::Status put_frame(sqlite3* db, uint64_t job, const StoredFrame& frame) {
+core::Status put_frame(SqlConnection& db, uint64_t job, const StoredFrame& frame) {
+  if (core::Status there = check_job_is_there(db, job); !there) return there;
   if (core::Status gone = delete_frame(db, job, frame.frame); !gone) return gone;
   const core::Status done = Query(db,
                                   "INSERT INTO frames (job, frame, done, reason, class, restarts, "
@@ -73,7 +75,7 @@ core::Status put_frame(sqlite3* db, uint64_t job, const StoredFrame& frame) {
   return done ? store_contributors(db, job, frame) : done;
 }
 
-core::Status delete_frame(sqlite3* db, uint64_t job, int32_t frame) {
+core::Status delete_frame(SqlConnection& db, uint64_t job, int32_t frame) {
   for (const char* sql : {"DELETE FROM frames WHERE job = ? AND frame = ?",
                           "DELETE FROM parts WHERE job = ? AND frame = ?",
                           "DELETE FROM outputs WHERE job = ? AND frame = ?"}) {
@@ -84,8 +86,8 @@ core::Status delete_frame(sqlite3* db, uint64_t job, int32_t frame) {
   return {};
 }
 
-core::Result<bool> delete_failed_frames(sqlite3* db, uint64_t job, std::optional<int32_t>& after,
-                                        uint32_t limit) {
+core::Result<bool> delete_failed_frames(SqlConnection& db, uint64_t job,
+                                        std::optional<int32_t>& after, uint32_t limit) {
   const auto frames = read_frames(db, job, after, limit);
   if (!frames) return frames.error();
   const auto has_failed = [](const StoredFrame& frame) { return !frame.done; };

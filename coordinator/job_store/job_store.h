@@ -12,6 +12,8 @@
 
 namespace hyades::coordinator {
 
+struct PostgresOptions;
+
 /// The life of a job, as stored; the numbers are those of the file.
 enum class StoredState : int { running = 1, paused = 2, done = 3, failed = 4, cancelled = 5 };
 
@@ -254,5 +256,10 @@ class JobStore {
 /// The store in a SQLite file (WAL, synchronous=FULL). A file of an older schema is brought to this
 /// one, step by step, each in a transaction; one of a newer schema is refused.
 core::Result<std::unique_ptr<JobStore>> open_sqlite_job_store(const std::string& path);
+
+/// The store in a PostgreSQL database, which prepare_postgres() (postgres_schema.h) has seen, for
+/// the coordinator that leads: tables of an older schema are brought to this one, and its
+/// next_incarnation() is that of `options`, which its lease has given out.
+core::Result<std::unique_ptr<JobStore>> open_postgres_job_store(const PostgresOptions& options);
 
 }  // namespace hyades::coordinator

@@ -1,31 +1,52 @@
 #include "coordinator/job_store/log_rows.h"
 
+#include <algorithm>
+#include <cstddef>
+#include <span>
 #include <string>
 #include <utility>
 
-#include "coordinator/job_store/database.h"
 #include "coordinator/job_store/removals.h"
+#include "coordinator/sql/connection.h"
 
 namespace hyades::coordinator {
+namespace {
 
-core::Status LogRows::add(sqlite3* db, uint64_t job, const std::vector<StoredLine>& lines) {
+constexpr size_t kLinesAtOnce = 100;  // the way to a database may be long
+
+core::Status insert_lines(SqlConnection& db, uint64_t job, std::span<const StoredLine> lines) {
+  std::string sql = "INSERT INTO lines (job, time_ms, level, frame, worker, text) VALUES ";
+  for (size_t i = 0; i < lines.size(); ++i)
+    sql += i == 0 ? "(?, ?, ?, ?, ?, ?)" : ", (?, ?, ?, ?, ?, ?)";
+  Query insert(db, sql);
   for (const StoredLine& line : lines) {
-    Query insert(db,
-                 "INSERT INTO lines (job, time_ms, level, frame, worker, text) "
-                 "VALUES (?, ?, ?, ?, ?, ?)");
     insert.bind(number(job)).bind(line.time_ms).bind(int64_t{line.level});
     if (line.frame) {
       insert.bind(int64_t{*line.frame});
     } else {
       insert.bind_null();
     }
-    if (core::Status done = insert.bind(line.worker).bind(line.text).run(); !done) return done;
+    insert.bind(line.worker).bind(line.text);
+  }
+  return insert.run();
+}
+
+}  // namespace
+
+core::Status LogRows::add(SqlConnection& db, uint64_t job, const std::vector<StoredLine>& lines) {
+  if (!lines.empty()) {
+    if (core::Status there = check_job_is_there(db, job); !there) return there;
+  }
+  for (std::span left(lines); !left.empty();) {
+    const auto some = left.first(std::min(left.size(), kLinesAtOnce));
+    if (core::Status done = insert_lines(db, job, some); !done) return done;
+    left = left.subspan(some.size());
   }
   return drop_old(db, job, lines.size());
 }
 
 /// Jobs' lines are counted once, and kept count of from there on.
-core::Status LogRows::drop_old(sqlite3* db, uint64_t job, uint64_t added) {
+core::Status LogRows::drop_old(SqlConnection& db, uint64_t job, uint64_t added) {
   const auto [counted, fresh] = counts_.try_emplace(job, 0);
   if (fresh) {
     Query count(db, "SELECT COUNT(*) FROM lines WHERE job = ?");
@@ -42,7 +63,7 @@ core::Status LogRows::drop_old(sqlite3* db, uint64_t job, uint64_t added) {
             "WHERE job = ?1 ORDER BY number DESC LIMIT 1 OFFSET ?2)");
   const core::Status gone =
       old.bind(number(job)).bind(number(kMostLines - kLinesDropped - 1)).run();
-  if (!gone || sqlite3_changes(db) == 0) return gone;
+  if (!gone || old.changed() == 0) return gone;
   Query first(db,
               "UPDATE lines SET level = 2, frame = NULL, worker = '', text = ?2 "
               "WHERE number = (SELECT MIN(number) FROM lines WHERE job = ?1)");
@@ -51,7 +72,7 @@ core::Status LogRows::drop_old(sqlite3* db, uint64_t job, uint64_t added) {
       .run();
 }
 
-core::Result<std::vector<StoredLine>> read_lines(sqlite3* db, uint64_t job, uint64_t after,
+core::Result<std::vector<StoredLine>> read_lines(SqlConnection& db, uint64_t job, uint64_t after,
                                                  uint32_t limit) {
   Query rows(db,
              "SELECT time_ms, level, frame, worker, text, number FROM lines "

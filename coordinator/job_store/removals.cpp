@@ -2,12 +2,12 @@
 
 #include <array>
 
-#include "coordinator/job_store/database.h"
+#include <fmt/format.h>
 
 namespace hyades::coordinator {
 namespace {
 
-/// What refers to a job. Each drops the first ?2 rows of job ?1 in some order that has an index.
+/// What belongs to a job. Each drops the first ?2 rows of job ?1 in some order that has an index.
 constexpr std::array kDrops = {
     "DELETE FROM outputs WHERE number IN "
     "(SELECT number FROM outputs WHERE job = ?1 ORDER BY path LIMIT ?2)",
@@ -19,23 +19,17 @@ constexpr std::array kDrops = {
     "(SELECT number FROM lines WHERE job = ?1 ORDER BY number LIMIT ?2)",
 };
 
-/// While it lives rows may go that others refer to, which then stay.
-class WithoutCascade {
- public:
-  explicit WithoutCascade(sqlite3* db) : db_(db) { set("OFF"); }
-  ~WithoutCascade() { set("ON"); }
-  WithoutCascade(const WithoutCascade&) = delete;
-  WithoutCascade& operator=(const WithoutCascade&) = delete;
-
- private:
-  void set(const std::string& value) { (void)Query(db_, "PRAGMA foreign_keys=" + value).run(); }
-  sqlite3* db_;
-};
-
 }  // namespace
 
-core::Status mark_removed(sqlite3* db, uint64_t job) {
-  const WithoutCascade alone(db);  // has to outlive the transaction
+core::Status check_job_is_there(SqlConnection& db, uint64_t job) {
+  Query found(db, "SELECT id FROM jobs WHERE id = ?");
+  found.bind(number(job));
+  if (found.next()) return {};
+  if (core::Status status = found.status(); !status) return status;
+  return core::Error{fmt::format("the job store: there is no job {}", job)};
+}
+
+core::Status mark_removed(SqlConnection& db, uint64_t job) {
   Transaction transaction(db);
   if (core::Status begun = transaction.status(); !begun) return begun;
   for (const char* sql :
@@ -45,7 +39,7 @@ core::Status mark_removed(sqlite3* db, uint64_t job) {
   return transaction.commit();
 }
 
-core::Result<bool> drop_removed_rows(sqlite3* db, uint32_t rows) {
+core::Result<bool> drop_removed_rows(SqlConnection& db, uint32_t rows) {
   Transaction transaction(db);
   if (core::Status begun = transaction.status(); !begun) return begun.error();
   int64_t job = 0;
@@ -58,8 +52,9 @@ core::Result<bool> drop_removed_rows(sqlite3* db, uint32_t rows) {
   }
   int64_t left = rows;
   for (const char* sql : kDrops) {
-    if (core::Status done = Query(db, sql).bind(job).bind(left).run(); !done) return done.error();
-    left -= sqlite3_changes(db);
+    Query drop(db, sql);
+    if (core::Status done = drop.bind(job).bind(left).run(); !done) return done.error();
+    left -= drop.changed();
     if (left > 0) continue;
     if (core::Status done = transaction.commit(); !done) return done.error();
     return true;

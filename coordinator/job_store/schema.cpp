@@ -1,15 +1,16 @@
-// The schema's history. A step is never changed once it has been released; a change is a new step.
+// The schema's history in SQLite (postgres_schema.cpp has that of the other engine). A step is
+// never changed once it has been released; a change is a new step.
+#include "coordinator/job_store/schema.h"
+
 #include <array>
 #include <cstddef>
 #include <cstdint>
 #include <sstream>
-#include <string>
 
 #include <fmt/format.h>
 
-#include "coordinator/job_store/database.h"
+#include "coordinator/job_store/new_secret.h"
 #include "core/base/failpoint.h"
-#include "core/base/random_id.h"
 
 namespace hyades::coordinator {
 namespace {
@@ -188,45 +189,41 @@ void job_options(sqlite3_context* context, int count, sqlite3_value** values) {
   sqlite3_result_blob(context, bytes.data(), static_cast<int>(bytes.size()), SQLITE_TRANSIENT);
 }
 
-/// 256 random bits of the system's.
-void new_secret(sqlite3_context* context, int /*count*/, sqlite3_value** /*values*/) {
-  const auto one = core::random_id();
-  const auto other = core::random_id();
-  if (!one || !other) {
-    return sqlite3_result_error(context, "the system gives no random numbers", -1);
-  }
-  const std::string both = *one + *other;
-  sqlite3_result_text(context, both.data(), static_cast<int>(both.size()), SQLITE_TRANSIENT);
+/// For the step that adds the secret.
+void give_secret(sqlite3_context* context, int /*count*/, sqlite3_value** /*values*/) {
+  const auto secret = new_secret();
+  if (!secret) return sqlite3_result_error(context, "the system gives no random numbers", -1);
+  sqlite3_result_text(context, secret->data(), static_cast<int>(secret->size()), SQLITE_TRANSIENT);
 }
+
+constexpr int kSchemaVersion = static_cast<int>(kSteps.size());
 
 }  // namespace
 
-const int kSchemaVersion = static_cast<int>(kSteps.size());
-
-core::Status migrate(sqlite3* db) {
-  Query read(db, "PRAGMA user_version");
-  const int64_t version = read.next() ? read.integer(0) : 0;
-  if (core::Status known = read.run(); !known) return known;
+core::Status migrate(SqliteConnection& db) {
+  int64_t version = 0;
+  {
+    Query read(db, "PRAGMA user_version");
+    if (read.next()) version = read.integer(0);
+    if (core::Status known = read.run(); !known) return known;
+  }
   if (version > kSchemaVersion) {
     return core::Error{fmt::format(
         "was written by a newer Hyades (schema {}, this one knows up to {}); use that one", version,
         kSchemaVersion)};
   }
-  if (sqlite3_create_function(db, "job_options", 5, SQLITE_UTF8 | SQLITE_DETERMINISTIC, nullptr,
-                              job_options, nullptr, nullptr) != SQLITE_OK ||
-      sqlite3_create_function(db, "new_secret", 0, SQLITE_UTF8, nullptr, new_secret, nullptr,
+  if (sqlite3_create_function(db.get(), "job_options", 5, SQLITE_UTF8 | SQLITE_DETERMINISTIC,
+                              nullptr, job_options, nullptr, nullptr) != SQLITE_OK ||
+      sqlite3_create_function(db.get(), "new_secret", 0, SQLITE_UTF8, nullptr, give_secret, nullptr,
                               nullptr) != SQLITE_OK) {
-    return core::Error{sqlite3_errmsg(db)};
+    return core::Error{sqlite3_errmsg(db.get())};
   }
   for (int64_t step = version; step < kSchemaVersion; ++step) {
     Transaction transaction(db);
     if (core::Status begun = transaction.status(); !begun) return begun;
-    char* error = nullptr;
-    if (sqlite3_exec(db, kSteps[static_cast<size_t>(step)], nullptr, nullptr, &error) !=
-        SQLITE_OK) {
-      const std::string why = error;
-      sqlite3_free(error);
-      return core::Error{fmt::format("schema {} could not be made: {}", step + 1, why)};
+    if (core::Status made = db.run_script(kSteps[static_cast<size_t>(step)]); !made) {
+      return core::Error{
+          fmt::format("schema {} could not be made: {}", step + 1, made.error().message)};
     }
     core::failpoint("mid-migration");
     if (core::Status noted = Query(db, fmt::format("PRAGMA user_version={}", step + 1)).run();
@@ -236,6 +233,13 @@ core::Status migrate(sqlite3* db) {
     if (core::Status done = transaction.commit(); !done) return done;
   }
   return {};
+}
+
+core::Result<std::unique_ptr<SqliteConnection>> open_job_database(const std::string& path) {
+  auto db = open_sqlite(path);
+  if (!db) return db;
+  if (core::Status migrated = migrate(**db); !migrated) return migrated.error().in(path);
+  return db;
 }
 
 }  // namespace hyades::coordinator

@@ -4,7 +4,7 @@
 
 namespace hyades::coordinator {
 
-core::Result<std::vector<StoredToken>> read_tokens(sqlite3* db) {
+core::Result<std::vector<StoredToken>> read_tokens(SqlConnection& db) {
   std::vector<StoredToken> tokens;
   Query rows(db,
              "SELECT id, name, role, hash, created_ms, expires_ms, used_ms, revoked_ms, pool, "
@@ -19,7 +19,7 @@ core::Result<std::vector<StoredToken>> read_tokens(sqlite3* db) {
   return tokens;
 }
 
-core::Status insert_token(sqlite3* db, const StoredToken& token) {
+core::Status insert_token(SqlConnection& db, const StoredToken& token) {
   return Query(db,
                "INSERT INTO tokens (id, name, role, hash, created_ms, expires_ms, used_ms, "
                "revoked_ms, pool, machines) VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?)")
@@ -36,14 +36,18 @@ core::Status insert_token(sqlite3* db, const StoredToken& token) {
       .run();
 }
 
-core::Status mark_revoked(sqlite3* db, const std::string& id, int64_t revoked_ms) {
+core::Status mark_revoked(SqlConnection& db, const std::string& id, int64_t revoked_ms) {
   return Query(db, "UPDATE tokens SET revoked_ms = ? WHERE id = ? AND revoked_ms = 0")
       .bind(revoked_ms)
       .bind(id)
       .run();
 }
 
-core::Status update_uses(sqlite3* db, const std::vector<TokenUse>& uses) {
+core::Status delete_token(SqlConnection& db, const std::string& id) {
+  return Query(db, "DELETE FROM tokens WHERE id = ?").bind(id).run();
+}
+
+core::Status update_uses(SqlConnection& db, const std::vector<TokenUse>& uses) {
   Transaction transaction(db);
   if (core::Status begun = transaction.status(); !begun) return begun;
   for (const TokenUse& use : uses) {

@@ -5,16 +5,15 @@
 
 #include <filesystem>
 #include <fstream>
+#include <memory>
 #include <sstream>
 #include <string>
 #include <vector>
 
-#include <sqlite3.h>
-
 #include "coordinator/backup/copy_database.h"
 #include "coordinator/backup/manifest.h"
-#include "coordinator/job_store/database.h"
 #include "coordinator/job_store/incarnation_file.h"
+#include "coordinator/job_store/schema.h"
 #include "tests/support/temp_folder.h"
 
 namespace hyades::coordinator {
@@ -36,10 +35,10 @@ void write(const fs::path& path, const std::string& text) {
 /// A job store as a running coordinator has it open, with a table of the test's own.
 class LiveStore {
  public:
-  explicit LiveStore(const std::string& path) : db_(open_database(path).value()) {
+  explicit LiveStore(const std::string& path) : db_(open_job_database(path).value()) {
     run("CREATE TABLE marks (number INTEGER)");
   }
-  void run(const std::string& sql) { ASSERT_TRUE(Query(db_.get(), sql).run().ok()) << sql; }
+  void run(const std::string& sql) { ASSERT_TRUE(Query(*db_, sql).run().ok()) << sql; }
   /// In one change: number and -number.
   void mark(int number) {
     run("BEGIN");
@@ -51,17 +50,17 @@ class LiveStore {
   void checkpoint() { run("PRAGMA wal_checkpoint(TRUNCATE)"); }
 
  private:
-  Database db_;
+  std::unique_ptr<SqliteConnection> db_;
 };
 
 /// The largest mark of a copy; -1 where a change is there in half.
 int marks_of(const std::string& path) {
-  auto db = open_database(path);
+  auto db = open_job_database(path);
   if (!db) {
     ADD_FAILURE() << db.error().message;
     return -2;
   }
-  Query query(db->get(), "SELECT COUNT(*), COALESCE(MAX(number), 0), SUM(number) FROM marks");
+  Query query(**db, "SELECT COUNT(*), COALESCE(MAX(number), 0), SUM(number) FROM marks");
   if (!query.next()) return -2;
   const auto largest = static_cast<int>(query.integer(1));
   return query.integer(0) == 2 * largest && query.integer(2) == 0 ? largest : -1;

@@ -1,58 +1,34 @@
 #include "coordinator/job_store/job_store.h"
 
 #include <gtest/gtest.h>
-#include <sqlite3.h>
-#include <sys/resource.h>
 
-#include <csignal>
 #include <cstdint>
 #include <memory>
 #include <string>
 #include <vector>
 
 #include "coordinator/job_store/contributor_rows.h"
-#include "coordinator/job_store/database.h"
-#include "coordinator/job_store/log_rows.h"
 #include "core/base/wall_clock.h"
-#include "tests/support/temp_folder.h"
+#include "tests/coordinator/job_store/store_place.h"
+#include "tests/coordinator/sql/postgres_server.h"
 
 namespace hyades::coordinator {
 namespace {
 
-StoredJob some_job(const std::string& key, const std::string& owner) {
-  StoredJob job;
-  job.key = key;
-  job.spec = std::string("spec\0bytes", 10);
-  job.name = "balls";
-  job.owner = owner;
-  job.priority = -3;
-  job.options = std::string("options\0bytes", 13);
-  job.frames = 7;
-  job.samples = 1'000'000'000'000;
-  job.submitted_ms = 42;
-  return job;
-}
+/// Each test is run with a store in each engine.
+class JobStoreOf : public testing::TestWithParam<const char*> {
+ protected:
+  void SetUp() override {
+    const std::string engine = GetParam();
+    if (engine == "postgres" && !test::postgres_is_there()) return;
+    place_ = std::make_unique<StorePlace>(engine);
+  }
+  std::unique_ptr<StorePlace> place_;
+};
 
-std::unique_ptr<JobStore> open(const std::string& path) {
-  auto store = open_sqlite_job_store(path);
-  EXPECT_TRUE(store.ok()) << (store ? "" : store.error().message);
-  return store ? std::move(*store) : nullptr;
-}
-
-TEST(JobStore, ASecondOneIsToldWhoIsThere) {
-  const test::TempFolder folder;
-  const auto first = open(folder.file("state.db"));
-  const auto second = open_sqlite_job_store(folder.file("state.db"));
-  ASSERT_FALSE(second.ok());
-  EXPECT_EQ(second.error().message + "/state.db",
-            "another coordinator works in " + folder.file("state.db"));
-}
-
-TEST(JobStore, KeepsWhatItWasGivenOverRestarts) {
-  const test::TempFolder folder;
-  const std::string path = folder.file("state.db");
+TEST_P(JobStoreOf, KeepsWhatItWasGivenOverRestarts) {
   {
-    auto store = open(path);
+    auto store = place_->open();
     EXPECT_EQ(*store->next_incarnation(), 1U);
     const auto added = store->add_job(some_job("key", "ada"));
     ASSERT_TRUE(added.ok());
@@ -64,7 +40,7 @@ TEST(JobStore, KeepsWhatItWasGivenOverRestarts) {
     ASSERT_TRUE(
         store->add_lines(1, {{5, 2, 3, "w", "text"}, {6, 1, std::nullopt, "", "more"}}).ok());
   }
-  auto store = open(path);
+  auto store = place_->open();
   EXPECT_EQ(*store->next_incarnation(), 2U);
   EXPECT_EQ(*store->open_jobs(), std::vector<uint64_t>{1});
   const auto job = store->job(1);
@@ -94,9 +70,8 @@ TEST(JobStore, KeepsWhatItWasGivenOverRestarts) {
   EXPECT_EQ(store->lines(1, lines->at(0).number, 10)->size(), 1U);
 }
 
-TEST(JobStore, OutputsGoByNameAndFolderAndOthersComeAtOnce) {
-  const test::TempFolder folder;
-  auto store = open(folder.file("state.db"));
+TEST_P(JobStoreOf, OutputsGoByNameAndFolderAndOthersComeAtOnce) {
+  auto store = place_->open();
   for (const char* key : {"a", "b"}) ASSERT_TRUE(store->add_job(some_job(key, "ada")).ok());
   for (const uint64_t job : {1U, 2U}) {
     ASSERT_TRUE(store
@@ -127,9 +102,8 @@ TEST(JobStore, OutputsGoByNameAndFolderAndOthersComeAtOnce) {
   EXPECT_EQ((*store->output(1, "f.mp4"))->size, 71U);
 }
 
-TEST(JobStore, OldLinesGoAndAreMissed) {
-  const test::TempFolder folder;
-  auto store = open(folder.file("state.db"));
+TEST_P(JobStoreOf, OldLinesGoAndAreMissed) {
+  auto store = place_->open();
   ASSERT_TRUE(store->add_job(some_job("", "ada")).ok());
   ASSERT_TRUE(store->add_job(some_job("", "bob")).ok());
   ASSERT_TRUE(store->add_lines(2, {{1, 1, std::nullopt, "", "another job's"}}).ok());
@@ -153,66 +127,8 @@ TEST(JobStore, OldLinesGoAndAreMissed) {
   EXPECT_EQ(store->lines(2, 0, 10)->size(), 1U);
 }
 
-std::vector<StoredLine> some_lines(uint64_t count) {
-  std::vector<StoredLine> lines;
-  for (uint64_t i = 0; i < count; ++i) {
-    lines.push_back({static_cast<int64_t>(i), 1, 7, "w", "line " + std::to_string(i)});
-  }
-  return lines;
-}
-
-/// While it lives the disk takes nothing that this process writes.
-class NoWrites {
- public:
-  NoWrites() {
-    std::signal(SIGXFSZ, SIG_IGN);
-    getrlimit(RLIMIT_FSIZE, &before_);
-    const rlimit none{0, before_.rlim_max};
-    setrlimit(RLIMIT_FSIZE, &none);
-  }
-  ~NoWrites() { setrlimit(RLIMIT_FSIZE, &before_); }
-  NoWrites(const NoWrites&) = delete;
-  NoWrites& operator=(const NoWrites&) = delete;
-
- private:
-  rlimit before_{};
-};
-
-TEST(JobStore, LinesThatCouldNotBeStoredPushOutNoOthers) {
-  const test::TempFolder folder;
-  auto store = open(folder.file("state.db"));
-  ASSERT_TRUE(store->add_job(some_job("", "ada")).ok());
-  ASSERT_TRUE(store->add_lines(1, some_lines(kMostLines - kLinesDropped + 100)).ok());
-  for (uint64_t i = 0; i < 2; ++i) {
-    const NoWrites full;
-    ASSERT_FALSE(store->add_lines(1, some_lines(kLinesDropped / 2 - 100)).ok());
-  }
-  ASSERT_TRUE(store->add_lines(1, some_lines(200)).ok());
-  EXPECT_EQ(store->lines(1, 0, 1)->at(0).text, "line 0") << "there was room";
-  EXPECT_EQ(store->lines(1, 0, UINT32_MAX)->size(), kMostLines - kLinesDropped + 300);
-}
-
-TEST(JobStore, NoLineIsOverwrittenWhereNoneHadToGo) {
-  const test::TempFolder folder;
-  const std::string path = folder.file("state.db");
-  ASSERT_TRUE(open(path)->add_job(some_job("", "ada")).ok());
-  const auto db = open_database(path);
-  ASSERT_TRUE(db.ok());
-  LogRows table;
-  ASSERT_TRUE(table.add(db->get(), 1, some_lines(10)).ok());
-  {
-    Transaction lost(db->get());  // nobody tells the table that it is rolled back
-    ASSERT_TRUE(table.add(db->get(), 1, some_lines(kMostLines - 20)).ok());
-  }
-  ASSERT_TRUE(table.add(db->get(), 1, some_lines(20)).ok());
-  const auto lines = read_lines(db->get(), 1, 0, UINT32_MAX);
-  ASSERT_EQ(lines->size(), 30U);
-  EXPECT_EQ(lines->at(0).text, "line 0");
-}
-
-TEST(JobStore, AllFailedFramesAreForgottenTogether) {
-  const test::TempFolder folder;
-  auto store = open(folder.file("state.db"));
+TEST_P(JobStoreOf, AllFailedFramesAreForgottenTogether) {
+  auto store = place_->open();
   for (const char* owner : {"ada", "eve"}) {
     ASSERT_TRUE(store->add_job(some_job("", owner)).ok());
   }
@@ -231,17 +147,15 @@ TEST(JobStore, AllFailedFramesAreForgottenTogether) {
   EXPECT_EQ(store->frames(2)->size(), 4U);
 }
 
-TEST(JobStore, KeepsQuarantinesUntilTheyEnd) {
-  const test::TempFolder folder;
-  const std::string path = folder.file("state.db");
+TEST_P(JobStoreOf, KeepsQuarantinesUntilTheyEnd) {
   {
-    auto store = open(path);
+    auto store = place_->open();
     ASSERT_TRUE(store->quarantine({"worker-0001", "hot"}).ok());
     ASSERT_TRUE(store->quarantine({"worker-0002", "divergent"}).ok());
     ASSERT_TRUE(store->quarantine({"worker-0001", "divergent as well"}).ok());
     ASSERT_TRUE(store->end_quarantine("worker-0002").ok());
   }
-  auto store = open(path);
+  auto store = place_->open();
   const auto kept = store->quarantines();
   ASSERT_TRUE(kept.ok());
   ASSERT_EQ(kept->size(), 1U);
@@ -249,10 +163,12 @@ TEST(JobStore, KeepsQuarantinesUntilTheyEnd) {
   EXPECT_EQ(kept->front().reason, "divergent as well");
 }
 
-class DivergentWorkers : public testing::Test {
+class DivergentWorkers : public JobStoreOf {
  protected:
   void SetUp() override {
-    store_ = open(path_);
+    JobStoreOf::SetUp();
+    if (!place_) return;
+    store_ = place_->open();
     for (int i = 0; i < 3; ++i) ASSERT_TRUE(store_->add_job(some_job("", "ada")).ok());
     StoredJob over = **store_->job(2);
     over.state = StoredState::done;
@@ -271,12 +187,10 @@ class DivergentWorkers : public testing::Test {
     }
     return {};
   }
-  const test::TempFolder folder_;
-  const std::string path_ = folder_.file("state.db");
   std::unique_ptr<JobStore> store_;
 };
 
-TEST_F(DivergentWorkers, MakeWhatTheyHadAPartInDoubtful) {
+TEST_P(DivergentWorkers, MakeWhatTheyHadAPartInDoubtful) {
   done(1, 3, 10, {"good-worker"});
   done(1, 4, 11, {"good-worker", "divergent-worker"});
   done(1, 5, 12, {"", "good-worker"});  // before a restart
@@ -291,7 +205,7 @@ TEST_F(DivergentWorkers, MakeWhatTheyHadAPartInDoubtful) {
   EXPECT_TRUE(mark_divergent(1, 0).empty()) << "nothing new";
   EXPECT_EQ(store_->lines(1, 0, 10)->size(), 1U);
   store_.reset();
-  store_ = open(path_);
+  store_ = place_->open();
   EXPECT_EQ(store_->quarantines()->at(0).worker, "divergent-worker");
   EXPECT_TRUE(store_->frames(1)->at(1).suspect);
   done(1, 4, 20, {"good-worker"});  // again
@@ -300,7 +214,7 @@ TEST_F(DivergentWorkers, MakeWhatTheyHadAPartInDoubtful) {
   EXPECT_TRUE(mark_divergent(1, 0).empty());
 }
 
-TEST_F(DivergentWorkers, ThatWereTrustedLongAgoAreForgotten) {
+TEST_P(DivergentWorkers, ThatWereTrustedLongAgoAreForgotten) {
   std::vector<StoredTrust> workers;
   for (size_t i = 0; i < kMostTrusted + 3; ++i) {
     workers.push_back({"worker-" + std::to_string(i), 1 + i});
@@ -311,20 +225,20 @@ TEST_F(DivergentWorkers, ThatWereTrustedLongAgoAreForgotten) {
   for (const StoredTrust& worker : *kept) EXPECT_GT(worker.moment, 3U) << worker.worker;
 }
 
-TEST_F(DivergentWorkers, CouldBeTrustedOnce) {
+TEST_P(DivergentWorkers, CouldBeTrustedOnce) {
   ASSERT_TRUE(store_->trust({{"divergent-worker", 3}}).ok());
   ASSERT_TRUE(store_->trust({{"divergent-worker", 11}, {"other", 5}}).ok());
   done(1, 3, 11, {"divergent-worker"});
   done(1, 4, 12, {"divergent-worker"});
   store_.reset();
-  store_ = open(path_);
+  store_ = place_->open();
   const auto trusted = store_->trusted();
   ASSERT_EQ(trusted->size(), 2U);
   EXPECT_EQ(trusted->at(0).moment, 11U);
   EXPECT_EQ(mark_divergent(1, trusted->at(0).moment), std::vector<int32_t>{4});
 }
 
-TEST_F(DivergentWorkers, AreNotToldApartWhereTheyAreTooMany) {
+TEST_P(DivergentWorkers, AreNotToldApartWhereTheyAreTooMany) {
   std::vector<std::string> crowd;
   for (size_t i = 0; i < kMostContributors; ++i) crowd.push_back("worker " + std::to_string(i));
   done(1, 3, 1, crowd);
@@ -333,9 +247,8 @@ TEST_F(DivergentWorkers, AreNotToldApartWhereTheyAreTooMany) {
   EXPECT_EQ(mark_divergent(1, 0), std::vector<int32_t>{4});
 }
 
-TEST(JobStore, KeepsWhichFramesAreBlack) {
-  const test::TempFolder folder;
-  auto store = open(folder.file("state.db"));
+TEST_P(JobStoreOf, KeepsWhichFramesAreBlack) {
+  auto store = place_->open();
   ASSERT_TRUE(store->add_job(some_job("", "ada")).ok());
   StoredFrame frame{3, true, "", "class", 0};
   ASSERT_TRUE(store->frame_over(1, frame, {}).ok());
@@ -346,92 +259,72 @@ TEST(JobStore, KeepsWhichFramesAreBlack) {
   EXPECT_TRUE(store->frames(1)->at(0).black);
 }
 
-TEST(JobStore, FilesOfTheFirstSchemasAreBroughtUpToDate) {
-  const test::TempFolder folder;
-  const std::string path = folder.file("state.db");
-  {
-    auto store = open(path);
-    ASSERT_TRUE(store->add_job(some_job("", "ada")).ok());
-    ASSERT_TRUE(store->frame_over(1, {3, true, "", "class", 2}, {}).ok());
-  }
-  sqlite3* db = nullptr;
-  ASSERT_EQ(sqlite3_open(path.c_str(), &db), SQLITE_OK);
-  ASSERT_EQ(sqlite3_exec(db,
-                         "ALTER TABLE jobs ADD COLUMN spec BLOB NOT NULL DEFAULT x''; "
-                         "UPDATE jobs SET spec = (SELECT spec FROM specs WHERE job = id); "
-                         "DROP TABLE specs; DROP INDEX jobs_of_owner; "
-                         "DROP INDEX black_frames; ALTER TABLE frames DROP COLUMN black; "
-                         "DROP TABLE removals; DROP INDEX doubtful_frames; ALTER TABLE frames DROP "
-                         "COLUMN doubtful; "
-                         "DROP TABLE parts; DROP TABLE trusted; DROP INDEX outputs_of_frame; "
-                         "DROP TABLE tokens; DROP TRIGGER count_core_time; DROP TABLE core_time; "
-                         "ALTER TABLE jobs DROP COLUMN core_ns; ALTER TABLE jobs DROP COLUMN "
-                         "preview; ALTER TABLE jobs DROP COLUMN owner_proven; "
-                         "ALTER TABLE jobs DROP COLUMN options; DROP TABLE secret; "
-                         "ALTER TABLE jobs DROP COLUMN samples_done; "
-                         "ALTER TABLE jobs DROP COLUMN begun_ms; "
-                         "ALTER TABLE jobs DROP COLUMN busy_ns; "
-                         "PRAGMA user_version=3",
-                         nullptr, nullptr, nullptr),
-            SQLITE_OK);
-  sqlite3_close(db);
-  auto store = open(path);
-  const auto frames = store->frames(1);
-  ASSERT_EQ(frames->size(), 1U);
-  EXPECT_FALSE(frames->at(0).suspect);
-  EXPECT_FALSE(frames->at(0).black);
-  EXPECT_EQ((*store->job(1))->spec, some_job("", "ada").spec);
-  EXPECT_EQ((*store->job(1))->core_ns, 0U);
-  EXPECT_FALSE((*store->job(1))->preview);
-  EXPECT_FALSE((*store->job(1))->owner_proven) << "no token has shown who ada is";
-  EXPECT_TRUE(store->mark_divergent({"worker", "divergent"}, 0, {})->empty())
-      << "whose films an older program finished is not known";
+TEST_P(JobStoreOf, AReplacedOutputIsANewOne) {
+  auto store = place_->open();
+  ASSERT_TRUE(store->add_job(some_job("", "ada")).ok());
+  ASSERT_TRUE(store->change_outputs(1, {}, {{"a", 1, 9, "x"}, {"b", 1, 9, "y"}}).ok());
+  ASSERT_TRUE(store->change_outputs(1, {}, {{"a", 1, 10, "z"}}).ok());
+  const auto outputs = store->outputs(1, 0, 10);
+  ASSERT_EQ(outputs->size(), 2U);
+  EXPECT_EQ(outputs->at(0).path, "b");
+  EXPECT_EQ(outputs->at(1).path, "a");
+  EXPECT_EQ(outputs->at(1).sha256, "z");
+  EXPECT_GT(outputs->at(1).number, outputs->at(0).number);
+  EXPECT_EQ(outputs->at(1).number, 3U) << "numbers are never used twice";
 }
 
-TEST(JobStore, OwnersOfTheSixthSchemaAreProvenByTokensThatWereThereBefore) {
-  const test::TempFolder folder;
-  const std::string path = folder.file("state.db");
-  {
-    auto store = open(path);
-    StoredToken token{"9f3a01c2", "ada", 2, std::string(32, 'h'), 1000};
-    ASSERT_TRUE(store->add_token(token).ok());
-    for (const auto& [owner, submitted] :
-         {std::pair("ada", 999), std::pair("ada", 1000), std::pair("bob", 2000)}) {
-      StoredJob job = some_job("", owner);
-      job.submitted_ms = submitted;
-      ASSERT_TRUE(store->add_job(job).ok());
-    }
+TEST_P(JobStoreOf, NothingIsStoredOfAJobThatIsNotThere) {
+  auto store = place_->open();
+  EXPECT_FALSE(store->frame_over(7, {3, true, "", "class", 2}, {}).ok());
+  EXPECT_FALSE(store->change_outputs(7, {}, {{"a", 1, 9, "x"}}).ok());
+  EXPECT_FALSE(store->add_lines(7, some_lines(1)).ok());
+  EXPECT_TRUE(store->change_outputs(7, {"a"}, {}).ok()) << "it adds nothing";
+  EXPECT_TRUE(store->add_lines(7, {}).ok());
+  const auto db = [&] {
+    store.reset();
+    return place_->open_raw();
+  }();
+  for (const char* table : {"frames", "parts", "outputs", "lines"}) {
+    Query rows(*db, std::string("SELECT COUNT(*) FROM ") + table);
+    ASSERT_TRUE(rows.next());
+    EXPECT_EQ(rows.integer(0), 0) << table;
   }
-  sqlite3* db = nullptr;
-  ASSERT_EQ(sqlite3_open(path.c_str(), &db), SQLITE_OK);
-  ASSERT_EQ(sqlite3_exec(db,
-                         "ALTER TABLE jobs ADD COLUMN spec BLOB NOT NULL DEFAULT x''; "
-                         "UPDATE jobs SET spec = (SELECT spec FROM specs WHERE job = id); "
-                         "DROP TABLE specs; DROP INDEX jobs_of_owner; "
-                         "DROP INDEX black_frames; ALTER TABLE frames DROP COLUMN black; "
-                         "DROP TABLE removals; "
-                         "DROP TRIGGER count_core_time; DROP TABLE core_time; "
-                         "ALTER TABLE jobs DROP COLUMN owner_proven; "
-                         "ALTER TABLE jobs DROP COLUMN options; DROP TABLE secret; "
-                         "ALTER TABLE tokens DROP COLUMN pool; "
-                         "ALTER TABLE tokens DROP COLUMN machines; "
-                         "ALTER TABLE jobs DROP COLUMN samples_done; "
-                         "ALTER TABLE jobs DROP COLUMN begun_ms; "
-                         "ALTER TABLE jobs DROP COLUMN busy_ns; "
-                         "PRAGMA user_version=6",
-                         nullptr, nullptr, nullptr),
-            SQLITE_OK);
-  sqlite3_close(db);
-  auto store = open(path);
-  EXPECT_EQ(store->tokens()->front().machines, 20'000U) << "as many as a farm may have";
-  EXPECT_FALSE((*store->job(1))->owner_proven);
-  EXPECT_TRUE((*store->job(2))->owner_proven);
-  EXPECT_FALSE((*store->job(3))->owner_proven);
 }
 
-TEST(JobStore, OneKeyOneJob) {
-  const test::TempFolder folder;
-  auto store = open(folder.file("state.db"));
+TEST_P(JobStoreOf, KeepsItsSecret) {
+  const std::string secret = *place_->open()->secret();
+  EXPECT_EQ(secret.size(), 64U);
+  EXPECT_EQ(*place_->open()->secret(), secret);
+  EXPECT_NE(*StorePlace(GetParam()).open()->secret(), secret) << "each store has its own";
+}
+
+TEST_P(JobStoreOf, KeepsTokens) {
+  auto store = place_->open();
+  const StoredToken ada{"9f3a01c2", "ada", 2, std::string("h\0ash", 5), 1000, 9000, 0, 0, "", 0};
+  const StoredToken worker{"00000001", "worker", 1, "other", 1000, 0, 0, 0, "pool", 20};
+  ASSERT_TRUE(store->add_token(ada).ok());
+  ASSERT_TRUE(store->add_token(worker).ok());
+  EXPECT_FALSE(store->add_token(ada).ok()) << "its id is there already";
+  ASSERT_TRUE(store->note_uses({{"9f3a01c2", 5000}, {"00000001", 6000}}).ok());
+  ASSERT_TRUE(store->revoke_token("9f3a01c2", 7000).ok());
+  ASSERT_TRUE(store->revoke_token("9f3a01c2", 8000).ok()) << "once";
+  store.reset();
+  store = place_->open();
+  const auto tokens = store->tokens();
+  ASSERT_EQ(tokens->size(), 2U);
+  EXPECT_EQ(tokens->at(0).id, "00000001");
+  EXPECT_EQ(tokens->at(0).pool, "pool");
+  EXPECT_EQ(tokens->at(0).machines, 20U);
+  EXPECT_EQ(tokens->at(1).hash, ada.hash);
+  EXPECT_EQ(tokens->at(1).expires_ms, 9000);
+  EXPECT_EQ(tokens->at(1).used_ms, 5000);
+  EXPECT_EQ(tokens->at(1).revoked_ms, 7000);
+  ASSERT_TRUE(store->forget_token("9f3a01c2").ok());
+  EXPECT_EQ(store->tokens()->size(), 1U);
+}
+
+TEST_P(JobStoreOf, OneKeyOneJob) {
+  auto store = place_->open();
   EXPECT_EQ(store->add_job(some_job("a-key", "ada"))->id, 1U);
   const auto again = store->add_job(some_job("a-key", "bob"));
   EXPECT_EQ(again->id, 1U);
@@ -440,9 +333,8 @@ TEST(JobStore, OneKeyOneJob) {
   EXPECT_EQ(store->add_job(some_job("", "ada"))->id, 3U);
 }
 
-TEST(JobStore, ListsTheNewestFirst) {
-  const test::TempFolder folder;
-  auto store = open(folder.file("state.db"));
+TEST_P(JobStoreOf, ListsTheNewestFirst) {
+  auto store = place_->open();
   for (int i = 0; i < 5; ++i) (void)store->add_job(some_job("", i % 2 ? "bob" : "ada"));
   StoredJob over = **store->job(3);
   over.state = StoredState::done;
@@ -459,12 +351,10 @@ TEST(JobStore, ListsTheNewestFirst) {
   EXPECT_EQ(store->add_job(some_job("", "ada"))->id, 6U) << "ids are never used twice";
 }
 
-TEST(JobStore, CoreTimeIsKeptOfOwnersWhoseJobsAreForgotten) {
-  const test::TempFolder folder;
-  const std::string path = folder.file("state.db");
+TEST_P(JobStoreOf, CoreTimeIsKeptOfOwnersWhoseJobsAreForgotten) {
   const int64_t since = core::wall_ms() - 3'600'000;
   {
-    auto store = open(path);
+    auto store = place_->open();
     ASSERT_TRUE(store->add_job(some_job("", "ada")).ok());
     ASSERT_TRUE(store->add_job(some_job("", "ada")).ok());
     ASSERT_TRUE(store->add_job(some_job("", "bob")).ok());
@@ -482,30 +372,16 @@ TEST(JobStore, CoreTimeIsKeptOfOwnersWhoseJobsAreForgotten) {
     EXPECT_EQ(*store->core_ns_of("ada", since), 1'500'000'000'007U);
     ASSERT_TRUE(store->remove_job(1).ok());
   }
-  auto store = open(path);
+  auto store = place_->open();
   EXPECT_EQ(*store->core_ns_of("ada", since), 1'500'000'000'007U);
   EXPECT_EQ(*store->core_ns_of("bob", since), 5U);
   EXPECT_EQ(*store->core_ns_of("ada", core::wall_ms() + 2 * 3'600'000), 0U) << "not since then";
 }
 
-TEST(JobStore, ANewerSchemaIsRefused) {
-  const test::TempFolder folder;
-  const std::string path = folder.file("state.db");
-  open(path).reset();
-  sqlite3* db = nullptr;
-  ASSERT_EQ(sqlite3_open(path.c_str(), &db), SQLITE_OK);
-  ASSERT_EQ(sqlite3_exec(db, "PRAGMA user_version=999", nullptr, nullptr, nullptr), SQLITE_OK);
-  sqlite3_close(db);
-  const auto refused = open_sqlite_job_store(path);
-  ASSERT_FALSE(refused.ok());
-  EXPECT_NE(refused.error().message.find("newer"), std::string::npos) << refused.error().message;
-}
-
-TEST(JobStore, OneProcessAtATime) {
-  const test::TempFolder folder;
-  const auto store = open(folder.file("state.db"));
-  EXPECT_FALSE(open_sqlite_job_store(folder.file("state.db")).ok());
-}
+const auto kEngines = testing::Values("sqlite", "postgres");
+const auto kName = [](const auto& engine) { return std::string(engine.param); };
+INSTANTIATE_TEST_SUITE_P(, JobStoreOf, kEngines, kName);
+INSTANTIATE_TEST_SUITE_P(, DivergentWorkers, kEngines, kName);
 
 }  // namespace
 }  // namespace hyades::coordinator

@@ -16,11 +16,13 @@
 #include <fmt/format.h>
 
 #include "coordinator/job_store/contributor_rows.h"
-#include "coordinator/job_store/database.h"
 #include "coordinator/job_store/frame_rows.h"
 #include "coordinator/job_store/job_store.h"
 #include "coordinator/job_store/output_rows.h"
 #include "coordinator/job_store/removals.h"
+#include "coordinator/job_store/schema.h"
+#include "tests/coordinator/job_store/store_place.h"
+#include "tests/coordinator/sql/postgres_server.h"
 #include "tests/support/temp_folder.h"
 
 namespace hyades::coordinator {
@@ -51,6 +53,82 @@ uint64_t bytes_read() {
   return bytes;
 }
 
+int64_t rows_of(SqlConnection& db, const std::string& table) {
+  Query rows(db, "SELECT COUNT(*) FROM " + table);
+  return rows.next() ? rows.integer(0) : -1;
+}
+
+/// With a store in each engine.
+class LargeJobsOf : public testing::TestWithParam<const char*> {
+ protected:
+  void SetUp() override {
+    const std::string engine = GetParam();
+    if (engine == "postgres" && !test::postgres_is_there()) return;
+    place_ = std::make_unique<StorePlace>(engine);
+    store_ = place_->open();
+  }
+  std::unique_ptr<StorePlace> place_;
+  std::unique_ptr<JobStore> store_;
+};
+
+TEST_P(LargeJobsOf, AreGoneAtOnceForAllWhoAsk) {
+  const std::string key(16, 'k');
+  ASSERT_TRUE(store_->add_job(job_of("ada", key)).ok());
+  const StoredFrame over{0, true, "", "class", 0, {"worker"}, 1};
+  ASSERT_TRUE(store_->frame_over(1, over, many_outputs(10)).ok());
+  ASSERT_TRUE(store_->add_lines(1, std::vector<StoredLine>(10)).ok());
+  ASSERT_TRUE(store_->remove_job(1).ok());
+  const auto is_gone = [&] {
+    EXPECT_FALSE(store_->job(1)->has_value());
+    EXPECT_FALSE(store_->state(1)->has_value());
+    EXPECT_FALSE(store_->job_of_key(key)->has_value());
+    EXPECT_TRUE(store_->open_jobs()->empty());
+    EXPECT_TRUE(store_->frames(1)->empty());
+    EXPECT_TRUE(store_->outputs(1, 0, 100)->empty());
+    EXPECT_TRUE(store_->outputs_of(1, 0)->empty());
+    EXPECT_FALSE(store_->output(1, "film.mp4.frames/000000.png")->has_value());
+    EXPECT_TRUE(store_->lines(1, 0, 100)->empty());
+    EXPECT_TRUE(store_->mark_divergent({"worker", "why"}, 0, {})->empty());
+    EXPECT_TRUE(store_->suspect_frames(1, 10)->empty());
+    EXPECT_FALSE(store_->add_lines(1, std::vector<StoredLine>(1)).ok());
+    EXPECT_FALSE(store_->change_outputs(1, {}, many_outputs(1)).ok());
+    EXPECT_FALSE(store_->frame_over(1, over, {}).ok());
+  };
+  is_gone();
+  store_.reset();  // killed before anything of it was dropped
+  store_ = place_->open();
+  is_gone();
+  while (*store_->drop_removed(3)) is_gone();
+  EXPECT_EQ(store_->add_job(job_of("ada", key))->id, 2U);
+  store_.reset();
+  const auto db = place_->open_raw();
+  for (const char* table : {"outputs", "frames", "parts", "lines", "removals"}) {
+    EXPECT_EQ(rows_of(*db, table), 0) << table;
+  }
+  EXPECT_EQ(rows_of(*db, "specs"), 1) << "the new job's";
+}
+
+TEST_P(LargeJobsOf, ShowWhatTheyAskForPageByPage) {
+  StoredJob job = job_of("ada");
+  job.spec = std::string(1000, 's');
+  for (int i = 0; i < 7; ++i) ASSERT_TRUE(store_->add_job(job).ok());
+  ASSERT_TRUE(store_->remove_job(4).ok());
+  std::vector<std::vector<uint64_t>> pages;
+  for (uint64_t after = 0;; after = pages.back().back()) {
+    const auto page = store_->specs(after, 1500);
+    ASSERT_TRUE(page.ok());
+    if (page->empty()) break;
+    pages.emplace_back();
+    for (const StoredSpec& one : *page) pages.back().push_back(one.id);
+  }
+  EXPECT_EQ(pages, (std::vector<std::vector<uint64_t>>{{1, 2}, {3, 5}, {6, 7}}));
+  EXPECT_EQ(store_->specs(0, 0)->size(), 1U);
+}
+
+INSTANTIATE_TEST_SUITE_P(, LargeJobsOf, testing::Values("sqlite", "postgres"),
+                         [](const auto& engine) { return std::string(engine.param); });
+
+/// With a store in SQLite, which tells what it has done for what.
 class LargeJobs : public testing::Test {
  protected:
   void SetUp() override { open_store(); }
@@ -61,21 +139,18 @@ class LargeJobs : public testing::Test {
   }
   void open_raw() {
     store_.reset();
-    auto opened = open_database(path_);
+    auto opened = open_job_database(path_);
     ASSERT_TRUE(opened.ok());
     db_ = std::move(*opened);
   }
-  int64_t count(const std::string& table) const {
-    Query rows(db_.get(), "SELECT COUNT(*) FROM " + table);
-    return rows.next() ? rows.integer(0) : -1;
-  }
+  int64_t count(const std::string& table) const { return rows_of(*db_, table); }
   /// Steps of SQLite's machine that `what` takes, in hundreds.
   int steps_of(const std::function<void()>& what) const {
     int hundreds = 0;
     const auto note = [](void* count) { return ++*static_cast<int*>(count) < 0 ? 1 : 0; };
-    sqlite3_progress_handler(db_.get(), 100, note, &hundreds);
+    sqlite3_progress_handler(db_->get(), 100, note, &hundreds);
     what();
-    sqlite3_progress_handler(db_.get(), 0, nullptr, nullptr);
+    sqlite3_progress_handler(db_->get(), 0, nullptr, nullptr);
     return hundreds;
   }
   /// Questions of others that are answered while `what` goes on.
@@ -102,7 +177,7 @@ class LargeJobs : public testing::Test {
   const test::TempFolder folder_;
   const std::string path_ = folder_.file("state.db");
   std::unique_ptr<JobStore> store_;
-  Database db_;
+  std::unique_ptr<SqliteConnection> db_;
 };
 
 TEST_F(LargeJobs, GoInPieces) {
@@ -116,15 +191,15 @@ TEST_F(LargeJobs, GoInPieces) {
     ASSERT_TRUE(store_->add_lines(job, std::vector<StoredLine>(30)).ok());
   }
   open_raw();
-  int before = sqlite3_total_changes(db_.get());
-  ASSERT_TRUE(mark_removed(db_.get(), 1).ok());
-  EXPECT_LT(sqlite3_total_changes(db_.get()) - before, 5) << "in the one step that is waited for";
+  int before = sqlite3_total_changes(db_->get());
+  ASSERT_TRUE(mark_removed(*db_, 1).ok());
+  EXPECT_LT(sqlite3_total_changes(db_->get()) - before, 5) << "in the one step that is waited for";
   int pieces = 0;
   for (bool more = true; more; ++pieces) {
-    before = sqlite3_total_changes(db_.get());
-    const auto dropped = drop_removed_rows(db_.get(), 500);
+    before = sqlite3_total_changes(db_->get());
+    const auto dropped = drop_removed_rows(*db_, 500);
     ASSERT_TRUE(dropped.ok());
-    EXPECT_LE(sqlite3_total_changes(db_.get()) - before, 501);
+    EXPECT_LE(sqlite3_total_changes(db_->get()) - before, 501);
     more = *dropped;
   }
   EXPECT_GE(pieces, 5);
@@ -134,41 +209,6 @@ TEST_F(LargeJobs, GoInPieces) {
   EXPECT_EQ(count("lines"), 30);
   EXPECT_EQ(count("specs"), 1);
   EXPECT_EQ(count("removals"), 0);
-}
-
-TEST_F(LargeJobs, AreGoneAtOnceForAllWhoAsk) {
-  const std::string key(16, 'k');
-  ASSERT_TRUE(store_->add_job(job_of("ada", key)).ok());
-  const StoredFrame over{0, true, "", "class", 0, {"worker"}, 1};
-  ASSERT_TRUE(store_->frame_over(1, over, many_outputs(10)).ok());
-  ASSERT_TRUE(store_->add_lines(1, std::vector<StoredLine>(10)).ok());
-  ASSERT_TRUE(store_->remove_job(1).ok());
-  const auto is_gone = [&] {
-    EXPECT_FALSE(store_->job(1)->has_value());
-    EXPECT_FALSE(store_->state(1)->has_value());
-    EXPECT_FALSE(store_->job_of_key(key)->has_value());
-    EXPECT_TRUE(store_->open_jobs()->empty());
-    EXPECT_TRUE(store_->frames(1)->empty());
-    EXPECT_TRUE(store_->outputs(1, 0, 100)->empty());
-    EXPECT_TRUE(store_->outputs_of(1, 0)->empty());
-    EXPECT_FALSE(store_->output(1, "film.mp4.frames/000000.png")->has_value());
-    EXPECT_TRUE(store_->lines(1, 0, 100)->empty());
-    EXPECT_TRUE(store_->mark_divergent({"worker", "why"}, 0, {})->empty());
-    EXPECT_TRUE(store_->suspect_frames(1, 10)->empty());
-    EXPECT_FALSE(store_->add_lines(1, std::vector<StoredLine>(1)).ok());
-    EXPECT_FALSE(store_->change_outputs(1, {}, many_outputs(1)).ok());
-  };
-  is_gone();
-  store_.reset();  // killed before anything of it was dropped
-  open_store();
-  is_gone();
-  while (*store_->drop_removed(3)) is_gone();
-  EXPECT_EQ(store_->add_job(job_of("ada", key))->id, 2U);
-  open_raw();
-  for (const char* table : {"outputs", "frames", "parts", "lines", "removals"}) {
-    EXPECT_EQ(count(table), 0) << table;
-  }
-  EXPECT_EQ(count("specs"), 1) << "the new job's";
 }
 
 TEST_F(LargeJobs, AreReadInTurnsWithOthers) {
@@ -186,10 +226,10 @@ TEST_F(LargeJobs, BeginAgainInTurnsWithOthers) {
   ASSERT_TRUE(store_->add_job(job_of("ada")).ok());
   open_raw();
   {
-    Transaction all(db_.get());
+    Transaction all(*db_);
     for (int32_t frame = 0; frame < 20'000; ++frame) {
       const bool done = frame % 3 == 0;
-      ASSERT_TRUE(put_frame(db_.get(), 1, {frame, done, "why", "class", 0, {"worker"}, 1}).ok());
+      ASSERT_TRUE(put_frame(*db_, 1, {frame, done, "why", "class", 0, {"worker"}, 1}).ok());
     }
     ASSERT_TRUE(all.commit().ok());
   }
@@ -226,29 +266,12 @@ TEST_F(LargeJobs, AreListedAndChangedWithoutTheirSpecs) {
   EXPECT_EQ((*store_->job(7))->spec, job.spec);
 }
 
-TEST_F(LargeJobs, ShowWhatTheyAskForPageByPage) {
-  StoredJob job = job_of("ada");
-  job.spec = std::string(1000, 's');
-  for (int i = 0; i < 7; ++i) ASSERT_TRUE(store_->add_job(job).ok());
-  ASSERT_TRUE(store_->remove_job(4).ok());
-  std::vector<std::vector<uint64_t>> pages;
-  for (uint64_t after = 0;; after = pages.back().back()) {
-    const auto page = store_->specs(after, 1500);
-    ASSERT_TRUE(page.ok());
-    if (page->empty()) break;
-    pages.emplace_back();
-    for (const StoredSpec& one : *page) pages.back().push_back(one.id);
-  }
-  EXPECT_EQ(pages, (std::vector<std::vector<uint64_t>>{{1, 2}, {3, 5}, {6, 7}}));
-  EXPECT_EQ(store_->specs(0, 0)->size(), 1U);
-}
-
 TEST_F(LargeJobs, OfOthersAreNotLookedThroughForAnOwners) {
   for (int i = 0; i < 500; ++i) ASSERT_TRUE(store_->add_job(job_of(i == 250 ? "eve" : "ada")).ok());
   open_raw();
   const auto plan = [&](const std::string& what) {
-    Query rows(db_.get(), "EXPLAIN QUERY PLAN SELECT * FROM jobs WHERE id < 1000 AND " + what +
-                              " ORDER BY id DESC LIMIT 10");
+    Query rows(*db_, "EXPLAIN QUERY PLAN SELECT * FROM jobs WHERE id < 1000 AND " + what +
+                         " ORDER BY id DESC LIMIT 10");
     return rows.next() ? rows.bytes(3) : "";
   };
   EXPECT_NE(plan("owner = 'eve'").find("jobs_of_owner"), std::string::npos);
@@ -259,20 +282,20 @@ TEST_F(LargeJobs, AreNotSearchedForOneOutput) {
   ASSERT_TRUE(store_->add_job(job_of("ada")).ok());
   ASSERT_TRUE(store_->change_outputs(1, {}, many_outputs(20'000)).ok());
   open_raw();
-  EXPECT_LT(steps_of([&] { EXPECT_TRUE(delete_outputs(db_.get(), 1, {"film.mp4"}).ok()); }), 5);
+  EXPECT_LT(steps_of([&] { EXPECT_TRUE(delete_outputs(*db_, 1, {"film.mp4"}).ok()); }), 5);
   EXPECT_EQ(count("outputs"), 20'000);
 }
 
 TEST_F(LargeJobs, AreLookedThroughInTurnsWithOthersForWhatAWorkerDid) {
-  constexpr int32_t kMany = 20'000;
+  constexpr int32_t kMany = 60'000;
   ASSERT_TRUE(store_->add_job(job_of("ada")).ok());
   ASSERT_TRUE(store_->add_job(job_of("ada")).ok());
   open_raw();
   {
-    Transaction all(db_.get());
+    Transaction all(*db_);
     for (int32_t frame = 0; frame < kMany; ++frame) {
       const std::string worker = frame % 1000 == 0 ? "divergent" : "good";
-      ASSERT_TRUE(put_frame(db_.get(), 2, {frame, true, "", "", 0, {worker}, 5}).ok());
+      ASSERT_TRUE(put_frame(*db_, 2, {frame, true, "", "", 0, {worker}, 5}).ok());
     }
     ASSERT_TRUE(all.commit().ok());
   }
