@@ -1,4 +1,5 @@
-// `hyades backup` and `hyades restore`: what a coordinator keeps, as one file and back.
+// `hyades backup`, `hyades restore`, `hyades migrate`: what a coordinator keeps, as one file and
+// back, or moved into a database and back.
 #include <cstdio>
 #include <string>
 
@@ -7,6 +8,7 @@
 #include "cli/command_line.h"
 #include "cli/program.h"
 #include "coordinator/backup/backup.h"
+#include "coordinator/shared_state/migrate_farm.h"
 #include "core/base/machine.h"
 #include "core/base/printable.h"
 #include "core/base/text.h"
@@ -67,11 +69,48 @@ int restore_command(int argc, char** argv) {
   return tell("hyades restore", hyades::coordinator::restore_backup(from, data), data);
 }
 
+int migrate_command(int argc, char** argv) {
+  CLI::App app(
+      "Moves what a coordinator keeps in its folder into a database that several coordinators "
+      "share, or back. No coordinator may run.",
+      "hyades migrate");
+  hyades::coordinator::FarmHomes homes;
+  bool back = false;
+  app.add_option("--data", homes.folder, "the coordinator's folder")->required();
+  app.add_option("--state", homes.database, "postgresql://USER@HOST/DATABASE")
+      ->envname("HYADES_STATE")
+      ->required();
+  app.add_option("--files", homes.files,
+                 "the folder beside the database, which may be that of --data")
+      ->required();
+  app.add_flag("--back", back, "from the database into the folder");
+  app.footer(
+      "examples:\n  hyades migrate --data /var/lib/hyades --state postgresql://hyades@db/hyades "
+      "--files /shared/hyades\n"
+      "The farm stays where it was until all of it is copied.\n"
+      "exit status: 0 done, 1 it could not be done, 2 wrong arguments");
+  if (const auto status = hyades::cli::parse_command_line(app, argc, argv, kBadArguments)) {
+    return *status;
+  }
+  const auto done = back ? hyades::coordinator::migrate_to_folder(homes)
+                         : hyades::coordinator::migrate_to_database(homes);
+  if (!done) {
+    std::fprintf(stderr, "hyades migrate: %s\n", done.error().message.c_str());
+    return 1;
+  }
+  std::printf("%s: %s film logs (%s), %s files copied\n",
+              back ? homes.folder.c_str() : homes.files.c_str(),
+              hyades::core::format_count(done->logs).c_str(),
+              hyades::core::format_bytes(done->log_bytes).c_str(),
+              hyades::core::format_count(done->files).c_str());
+  return 0;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
   hyades::core::ignore_file_size_signal();
-  constexpr hyades::cli::ProgramCommand kCommands[] = {{"backup", backup_command},
-                                                       {"restore", restore_command}};
+  constexpr hyades::cli::ProgramCommand kCommands[] = {
+      {"backup", backup_command}, {"restore", restore_command}, {"migrate", migrate_command}};
   return hyades::cli::run_program(kCommands, argc, argv);
 }

@@ -27,6 +27,7 @@
 #include "cli/config_file.h"
 #include "cli/log_options.h"
 #include "cli/number_range.h"
+#include "cli/shared_farm.h"
 #include "coordinator/access/authority.h"
 #include "coordinator/access/first_admin.h"
 #include "coordinator/access/machine_key.h"
@@ -43,6 +44,7 @@
 
 namespace {
 
+using hyades::cli::SharedFarm;
 using hyades::coordinator::Authority;
 using hyades::coordinator::Controller;
 using hyades::coordinator::ControllerOptions;
@@ -72,6 +74,7 @@ struct Arguments {
   std::string health = "off";
   std::vector<std::string> http_names;
   Notifier::Options news;
+  hyades::cli::SharedFarmOptions shared;
 };
 
 /// Of a URL, without its port; empty where it has none.
@@ -184,7 +187,7 @@ hyades::core::Result<std::unique_ptr<Authority>> open_authority(const Arguments&
                                                                 const std::string& shared_token,
                                                                 Controller& controller) {
   Authority::Options options;
-  if (auto key = hyades::coordinator::machine_key(arguments.controller.folder); key) {
+  if (auto key = hyades::coordinator::machine_key(arguments.controller.files); key) {
     options.machine_key = std::move(*key);
   } else {
     hyades::farm::log(LogLevel::warning, key.error().message +
@@ -193,7 +196,7 @@ hyades::core::Result<std::unique_ptr<Authority>> open_authority(const Arguments&
   }
   options.shared_token = shared_token;
   options.beyond = is_beyond(arguments);
-  options.audit_folder = arguments.controller.folder;
+  options.audit_folder = arguments.controller.files;
   options.plain = arguments.listen.cert_file.empty();
   options.owner_only = !arguments.listen.insecure;
   options.tell_unguarded = [&controller](const std::string& how) {
@@ -209,10 +212,10 @@ hyades::core::Result<std::unique_ptr<Authority>> open_authority(const Arguments&
   if (!authority || !options.beyond || arguments.listen.insecure || (*authority)->has_admin()) {
     return authority;
   }
-  const auto made = hyades::coordinator::make_first_admin(**authority, arguments.controller.folder);
+  const auto made = hyades::coordinator::make_first_admin(**authority, arguments.controller.files);
   if (!made) return made.error();
   hyades::farm::log(LogLevel::info,
-                    "an admin's token (" + made->id + ") is in " + arguments.controller.folder +
+                    "an admin's token (" + made->id + ") is in " + arguments.controller.files +
                         "/admin-token and holds for 30 days: make your own with it (hyades token "
                         "create --role admin --name NAME), revoke it and remove the file");
   return authority;
@@ -237,9 +240,10 @@ int log_and_fail(const std::string& why) {
   return 1;
 }
 
-/// Serves until one of `signals` comes. Exit status.
+/// Serves until one of `signals` comes. Exit status. `shared`: where there is one, this process
+/// leads it.
 int serve_until(const sigset_t& signals, const Arguments& arguments, const hyades::farm::Door& door,
-                Controller& controller) {
+                Controller& controller, SharedFarm* shared) {
   auto authority = open_authority(arguments, door.token, controller);
   if (!authority) return log_and_fail(authority.error().message);
   auto server = Server::start(door, controller, **authority);
@@ -256,11 +260,46 @@ int serve_until(const sigset_t& signals, const Arguments& arguments, const hyade
     note_address(arguments.controller.folder + "/health-address", (*health)->url() + "\n");
   const auto notifier = open_notifier(arguments, controller, http->get());
   note_address(arguments.controller.folder + "/http-address", *http ? (*http)->url() + "\n" : "");
+  if (shared != nullptr && *http) {
+    const std::string& said = arguments.news.dashboard;
+    shared->set_url(said.empty() ? (*http)->url() : said);
+  }
   tell_where((*server)->address(), http->get());
   int signal = 0;
   sigwait(&signals, &signal);
+  SharedFarm::end_soon();
   controller.stop();
   return 0;
+}
+
+/// Stands by until this process leads the coordinators of a database, and serves then.
+int serve_shared(const sigset_t& signals, const Arguments& arguments,
+                 const hyades::farm::Door& door) {
+  hyades::cli::SharedFarmOptions options = arguments.shared;
+  options.signals = &signals;
+  for (const std::string& place : {arguments.http, arguments.health}) {
+    if (place == "off") continue;
+    options.doors.push_back(arguments.listen);
+    options.doors.back().address = place;
+  }
+  // A place that this process had when it led before is another's by now.
+  for (const char* name : {"address", "http-address", "health-address"})
+    (void)std::remove((arguments.controller.folder + "/" + name).c_str());
+  auto shared = SharedFarm::lead(options);
+  if (!shared) return log_and_fail(shared.error().message);
+  if (!*shared) return 0;
+  ControllerOptions leading = arguments.controller;
+  leading.leads = [&farm = **shared] { return farm.leads(); };
+  auto stores = (*shared)->open_stores(leading.folder + "/tmp");
+  if (!stores) return log_and_fail(stores.error().message);
+  auto controller = Controller::open(leading, std::move(stores->jobs), std::move(stores->films));
+  if (!controller) return log_and_fail(controller.error().message);
+  (*shared)->lead_while([&controller = **controller, patience = options.lease] {
+    return std::chrono::steady_clock::now() - controller.last_turn() < patience;
+  });
+  const int status = serve_until(signals, arguments, door, **controller, shared->get());
+  (*shared)->lead_while(nullptr);
+  return status;
 }
 
 int serve(const Arguments& arguments) {
@@ -289,9 +328,12 @@ int serve(const Arguments& arguments) {
   sigaddset(&signals, SIGTERM);
   pthread_sigmask(SIG_BLOCK, &signals, nullptr);
 
-  auto controller = Controller::open(arguments.controller);
-  if (!controller) return log_and_fail(controller.error().message);
-  return serve_until(signals, arguments, *door, **controller);
+  if (arguments.shared.database.empty()) {
+    auto controller = Controller::open(arguments.controller);
+    if (!controller) return log_and_fail(controller.error().message);
+    return serve_until(signals, arguments, *door, **controller, nullptr);
+  }
+  return serve_shared(signals, arguments, *door);
 }
 
 struct Bounds {
@@ -309,7 +351,8 @@ void add_seconds(CLI::App& app, const std::string& name, Duration& value, const 
 }
 
 void add_addresses(CLI::App& app, Arguments& arguments) {
-  app.add_option("--data", arguments.controller.folder, "folder for everything that is kept")
+  app.add_option("--data", arguments.controller.folder,
+                 "folder for everything that is kept, or, with --state, for what is temporary")
       ->required();
   app.add_option("--listen", arguments.listen.address, "HOST:PORT; port 0 takes a free one")
       ->check(hyades::cli::address_error)
@@ -333,6 +376,30 @@ void add_addresses(CLI::App& app, Arguments& arguments) {
       "--http-name", arguments.http_names,
       "a name by which browsers reach the dashboard, beside addresses and this machine's "
       "own names; only needed where no token is asked for; again for others");
+}
+
+/// Of several coordinators that take over from each other.
+void add_shared(CLI::App& app, Arguments& arguments) {
+  auto* state =
+      app.add_option("--state", arguments.shared.database,
+                     "postgresql://USER@HOST/DATABASE that keeps jobs and films instead of --data: "
+                     "of all coordinators with the same one leads, the others stand by")
+          ->envname("HYADES_STATE")
+          ->check(hyades::cli::database_error)
+          ->type_name("URL");
+  app.add_option("--files", arguments.controller.files,
+                 "folder that all coordinators of --state see, for assets and outputs")
+      ->needs(state)
+      ->type_name("FOLDER");
+  app.add_option_function<double>(
+         "--leader-seconds",
+         [&arguments](double said) {
+           arguments.shared.lease = std::chrono::milliseconds(static_cast<int64_t>(said * 1e3));
+         },
+         "a leader that nobody has heard of for so long is replaced by another coordinator")
+      ->check(hyades::cli::in_range(0.5, 3600.0))
+      ->default_str(
+          fmt::format("{:g}", std::chrono::duration<double>(arguments.shared.lease).count()));
 }
 
 void add_guards(CLI::App& app, Arguments& arguments) {
@@ -443,6 +510,7 @@ int main(int argc, char** argv) {
   CLI::App app("Owns jobs, leases their units to workers, merges the films and writes the outputs.",
                "hyades coordinator");
   add_addresses(app, arguments);
+  add_shared(app, arguments);
   add_guards(app, arguments);
   add_news(app, arguments);
   hyades::cli::add_log_options(app, arguments.log);
@@ -458,6 +526,8 @@ int main(int argc, char** argv) {
       "  hyades coordinator --data my-farm --listen 0.0.0.0:7700 --http 0.0.0.0:8080 --insecure "
       "--http-name farm.example\n"
       "  hyades coordinator --data my-farm --price 0.04:EUR --log-format json\n"
+      "  hyades coordinator --data /var/lib/hyades --state postgresql://hyades@db/hyades "
+      "--files /shared/hyades\n"
       "docs/farm.md tells more. exit status: 0 after SIGTERM or SIGINT, 1 it could not start, 2 "
       "wrong arguments (or a token, certificate or key that is none)");
   // argv[1] is the word "coordinator".
@@ -465,6 +535,14 @@ int main(int argc, char** argv) {
   if (const auto status =
           hyades::cli::parse_command_line(app, argc - skipped, argv + skipped, kBadArguments)) {
     return *status;
+  }
+  if (arguments.shared.database.empty()) {
+    arguments.controller.files = arguments.controller.folder;
+  } else if (arguments.controller.files.empty()) {
+    std::fprintf(stderr,
+                 "hyades coordinator: --state keeps no files: expected --files FOLDER too, which "
+                 "all coordinators see\n");
+    return kBadArguments;
   }
   arguments.http_asked = app["--http"]->count() > 0;
   arguments.listen.asks_tokens = true;  // open_authority sees to it

@@ -53,6 +53,8 @@ const std::vector<Group>& groups() {
         {"worker", "hyades-worker", "render for a coordinator"},
         {"backup", "hyades-backup", "write what a coordinator keeps into one file, while it runs"},
         {"restore", "hyades-backup", "make a coordinator's folder out of a backup"},
+        {"migrate", "hyades-backup",
+         "move what a coordinator keeps into a database, for several of them, or back"},
         HYADES_FARM_COMMANDS(HYADES_ROW)}},
 #endif
       {"pictures",

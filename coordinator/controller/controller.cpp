@@ -1,5 +1,6 @@
 #include "coordinator/controller/controller.h"
 
+#include <atomic>
 #include <chrono>
 #include <filesystem>
 #include <system_error>
@@ -9,6 +10,7 @@
 
 #include "coordinator/controller/action_executor.h"
 #include "coordinator/controller/divergent_workers.h"
+#include "coordinator/controller/farm_id.h"
 #include "coordinator/controller/frame_finisher.h"
 #include "coordinator/controller/frame_progress.h"
 #include "coordinator/controller/job_films.h"
@@ -16,6 +18,7 @@
 #include "coordinator/controller/job_recovery.h"
 #include "coordinator/controller/job_starter.h"
 #include "coordinator/controller/sweeper.h"
+#include "coordinator/film_store/disk_film_logs.h"
 #include "coordinator/meters/meters.h"
 
 namespace hyades::coordinator {
@@ -37,14 +40,15 @@ SchedulerOptions scheduler_options(const ControllerOptions& options, uint64_t in
   return scheduler;
 }
 
-/// Makes the folder with its parts, and empties the one for what is temporary.
-core::Status make_folders(const std::string& folder) {
+/// Makes the folders with their parts, and empties the one for what is temporary.
+core::Status make_folders(const ControllerOptions& options) {
   std::error_code failed;
-  for (const char* part : {"", "/films", "/outputs", "/tmp"}) {
-    std::filesystem::create_directories(folder + part, failed);
-    if (failed) return core::Error{folder + part + ": " + failed.message()};
+  const std::string temporary = options.folder + "/tmp";
+  for (const std::string& folder : {options.folder, temporary, options.files + "/outputs"}) {
+    std::filesystem::create_directories(folder, failed);
+    if (failed) return core::Error{folder + ": " + failed.message()};
   }
-  for (const auto& left : std::filesystem::directory_iterator(folder + "/tmp", failed)) {
+  for (const auto& left : std::filesystem::directory_iterator(temporary, failed)) {
     std::filesystem::remove_all(left.path(), failed);
   }
   return {};
@@ -55,8 +59,10 @@ core::Status make_folders(const std::string& folder) {
 /// The parts, each after those that it needs.
 struct Controller::Parts {
   Parts(const ControllerOptions& options, std::unique_ptr<JobStore> store,
-        std::unique_ptr<farm::ContentStore> assets, uint64_t incarnation, std::string secret)
-      : context(options, std::move(store), std::move(assets), incarnation, std::move(secret)),
+        std::unique_ptr<FilmLogs> films, std::unique_ptr<farm::ContentStore> assets,
+        uint64_t incarnation, std::string secret)
+      : context(options, std::move(store), std::move(films), std::move(assets), incarnation,
+                std::move(secret)),
         quotas(context.options.per_owner),
         dispatcher(context.mutex, scheduler_options(options, incarnation)) {
     dispatcher.set_action_handler(executor);
@@ -92,27 +98,42 @@ struct Controller::Parts {
   Diagnosis diagnosis{context, dispatcher, jobs, workers, sessions, disk, videos};
   ActionExecutor executor{context, jobs,      workers, sessions, films,
                           frames,  divergent, records, videos};
+  std::atomic<TimePoint> last_turn{std::chrono::steady_clock::now()};
   TimePoint last_poke;   ///< of the clock
   TimePoint look_again;  ///< of the clock, for obstacles
   farm::RetryQueue clock{1, kClock};
 };
 
-core::Result<std::unique_ptr<Controller>> Controller::open(const ControllerOptions& options,
-                                                           std::unique_ptr<JobStore> store) {
-  if (auto made = make_folders(options.folder); !made) return made.error();
+core::Result<std::unique_ptr<Controller>> Controller::open(const ControllerOptions& wanted,
+                                                           std::unique_ptr<JobStore> store,
+                                                           std::unique_ptr<FilmLogs> films) {
+  ControllerOptions options = wanted;
+  if (options.files.empty()) options.files = options.folder;
+  if (auto made = make_folders(options); !made) return made.error();
+  bool was_ours = false;
   if (!store) {
-    auto opened = open_sqlite_job_store(options.folder + "/state.db");
+    const std::string state = options.folder + "/state.db";
+    was_ours = std::filesystem::exists(state);
+    if (!was_ours && std::filesystem::exists(state + ".migrated")) {
+      return core::Error{options.folder +
+                         ": its farm was moved into a database (state.db.migrated): expected "
+                         "--state, as 'hyades migrate' was given it"};
+    }
+    auto opened = open_sqlite_job_store(state);
     if (!opened) return opened.error();
     store = std::move(*opened);
   }
-  auto assets = farm::ContentStore::open({options.folder + "/assets", 0});
+  if (!films) films = disk_film_logs(options.folder + "/films");
+  auto secret = store->secret();
+  if (!secret) return secret.error();
+  if (auto ours = claim_files(options.files, *secret, was_ours); !ours) return ours.error();
+  auto assets = farm::ContentStore::open({options.files + "/assets", 0});
   if (!assets) return assets.error();
   const auto incarnation = store->next_incarnation();
   if (!incarnation) return incarnation.error();
-  auto secret = store->secret();
-  if (!secret) return secret.error();
-  std::unique_ptr<Controller> controller(new Controller(std::make_unique<Parts>(
-      options, std::move(store), std::move(*assets), *incarnation, std::move(*secret))));
+  std::unique_ptr<Controller> controller(new Controller(
+      std::make_unique<Parts>(options, std::move(store), std::move(films), std::move(*assets),
+                              *incarnation, std::move(*secret))));
   Parts& parts = *controller->parts_;
   if (auto loaded = parts.workers.load(); !loaded) return loaded.error();
   if (auto loaded = parts.divergent.load(); !loaded) return loaded.error();
@@ -142,6 +163,7 @@ Controller::Controller(std::unique_ptr<Parts> parts) : parts_(std::move(parts)) 
 /// What goes on beside the calls of workers and clients.
 void Controller::Parts::tick() {
   const TimePoint now = std::chrono::steady_clock::now();
+  last_turn = now;
   records.answer_late(now);
   Turn turn(dispatcher);
   if (const auto wake = dispatcher.scheduler().next_wake(); wake && *wake <= now) {
@@ -198,6 +220,8 @@ DiskWatch& Controller::disk() { return parts_->disk; }
 const OwnerQuotas& Controller::quotas() const { return parts_->quotas; }
 UnclaimedFiles& Controller::unclaimed() { return parts_->unclaimed; }
 OwnerConnections& Controller::connections() { return parts_->connections; }
+
+TimePoint Controller::last_turn() const { return parts_->last_turn; }
 
 Meters& Controller::meters() { return *parts_->context.meters; }
 farm::ContentStore& Controller::assets() { return *parts_->context.assets; }

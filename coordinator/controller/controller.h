@@ -33,10 +33,11 @@ namespace hyades::coordinator {
 class Controller {
  public:
   /// Opens the folder and recovers all jobs that have not ended; a job whose files are gone fails
-  /// alone. Jobs are kept in `store`, or, where that is null, in the folder. An error where another
-  /// process has the folder, or a newer version has written it.
+  /// alone. Jobs are kept in `store` and their films in `films`, or, where these are null, in the
+  /// folder. An error where another process has the folder, or a newer version has written it.
   static core::Result<std::unique_ptr<Controller>> open(const ControllerOptions& options,
-                                                        std::unique_ptr<JobStore> store = nullptr);
+                                                        std::unique_ptr<JobStore> store = nullptr,
+                                                        std::unique_ptr<FilmLogs> films = nullptr);
 
   /// Stops at once: all that was promised is durable.
   ~Controller();
@@ -57,6 +58,10 @@ class Controller {
   const OwnerQuotas& quotas() const;
   UnclaimedFiles& unclaimed();
   OwnerConnections& connections();
+
+  /// When it last looked at all that time brings: many times a second, unless something holds its
+  /// lock.
+  TimePoint last_turn() const;
 
   /// What is counted, by the controller and by its callers.
   Meters& meters();

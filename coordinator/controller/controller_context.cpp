@@ -11,10 +11,12 @@
 namespace hyades::coordinator {
 
 ControllerContext::ControllerContext(ControllerOptions options_, std::unique_ptr<JobStore> store_,
+                                     std::unique_ptr<FilmLogs> films_,
                                      std::unique_ptr<farm::ContentStore> assets_,
                                      uint64_t incarnation_, std::string secret)
     : options(std::move(options_)),
       store(std::move(store_)),
+      films(std::move(films_)),
       assets(std::move(assets_)),
       incarnation(incarnation_),
       proofs(std::move(secret)),
@@ -24,11 +26,7 @@ ControllerContext::ControllerContext(ControllerOptions options_, std::unique_ptr
 ControllerContext::~ControllerContext() = default;
 
 std::string ControllerContext::output_folder(uint64_t job) const {
-  return fmt::format("{}/outputs/{}", options.folder, job);
-}
-
-std::string ControllerContext::films_folder(uint64_t job) const {
-  return fmt::format("{}/films/{}", options.folder, job);
+  return fmt::format("{}/outputs/{}", options.files, job);
 }
 
 void ControllerContext::in_background(const ActiveJob& active, farm::RetryQueue::Task task) {

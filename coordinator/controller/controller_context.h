@@ -12,6 +12,7 @@
 #include "coordinator/controller/job_documents.h"
 #include "coordinator/controller/lease_proof.h"
 #include "coordinator/controller/state_lock.h"
+#include "coordinator/film_store/film_logs.h"
 #include "coordinator/job_store/job_store.h"
 #include "farm/content_store.h"
 #include "farm/retry_queue.h"
@@ -24,16 +25,16 @@ class Meters;
 /// What all parts of a controller have in common. It is made before them and outlives them.
 struct ControllerContext {
   ControllerContext(ControllerOptions options, std::unique_ptr<JobStore> store,
-                    std::unique_ptr<farm::ContentStore> assets, uint64_t incarnation,
-                    std::string secret);
+                    std::unique_ptr<FilmLogs> films, std::unique_ptr<farm::ContentStore> assets,
+                    uint64_t incarnation, std::string secret);
   ~ControllerContext();
 
-  /// Where the job's finished files lie, and its films.
+  /// Where the job's finished files lie.
   std::string output_folder(uint64_t job) const;
-  std::string films_folder(uint64_t job) const;
 
   const ControllerOptions options;
   const std::unique_ptr<JobStore> store;
+  const std::unique_ptr<FilmLogs> films;
   const std::unique_ptr<farm::ContentStore> assets;
   JobDocuments documents{*assets, options.document_memory};
   core::Mutex whole_records;  ///< FilmStoreOptions::whole_records

@@ -2,6 +2,7 @@
 
 #include <chrono>
 #include <cstdint>
+#include <functional>
 #include <string>
 
 #include "coordinator/film_store/disk_room.h"
@@ -35,7 +36,13 @@ struct JobRoom {
 
 /// How a controller works, and where.
 struct ControllerOptions {
-  std::string folder;                            ///< where all state lies; made if it is missing
+  std::string folder;  ///< where all state lies; made if it is missing
+  /// Where assets and outputs lie, which coordinators that take over from each other share; empty:
+  /// `folder`.
+  std::string files;
+  /// Whether this process may still remove what others may need by now; of coordinators that take
+  /// over from each other one may (LeaderLease::holds).
+  std::function<bool()> leads = [] { return true; };
   std::string finisher;                          ///< the program hyades-film
   Duration unit_time = std::chrono::seconds(5);  ///< that one thread is to take for one unit
   /// A lease that is not renewed for this long is lost.

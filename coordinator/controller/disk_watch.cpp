@@ -16,7 +16,7 @@ constexpr std::chrono::milliseconds kAskAgain{5000};
 }  // namespace
 
 void DiskWatch::measure() {
-  auto measured = measure_disk(context_.options.folder);
+  auto measured = measure_disk(context_.options.files);
   if (!measured) return;
   Turn turn(dispatcher_);
   // Between two walks what vanishes from the disk is taken for ours.
@@ -64,8 +64,8 @@ void DiskWatch::start() {
 
 /// Adds up what the folder takes.
 void DiskWatch::walk() {
-  const auto free = measure_disk(context_.options.folder);
-  const uint64_t used = measure_folder(context_.options.folder);
+  const auto free = measure_disk(context_.options.files);
+  const uint64_t used = measure_folder(context_.options.files);
   const StateLock lock(context_.mutex);
   walked_used_ = used;
   walked_free_ = free ? free->free : 0;

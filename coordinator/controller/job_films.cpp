@@ -133,7 +133,9 @@ std::unique_ptr<FilmStore> JobFilms::make(ActiveJob& active, bool resume) {
                 active.layout.layers.splats};
   FilmStoreOptions place;
   place.max_waiting_bytes = kWaitingBytes;
-  place.folder = context_.films_folder(active.stored.id);
+  place.folder = context_.films->folder(active.stored.id);
+  place.aside_folder = context_.films->aside_folder(active.stored.id);
+  place.files = &context_.films->files();
   place.frame_key = [key = active.key](int32_t) { return key; };
   place.kept = resume ? KeptFilms::require : KeptFilms::erase;
   place.whole_records = &context_.whole_records;

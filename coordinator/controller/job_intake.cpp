@@ -16,9 +16,9 @@
 #include "coordinator/controller/job_starter.h"
 #include "coordinator/controller/job_steering.h"
 #include "coordinator/controller/not_found.h"
-#include "coordinator/controller/remove_folder.h"
 #include "coordinator/controller/sweeper.h"
 #include "coordinator/controller/video_maker.h"
+#include "coordinator/film_store/remove_folder.h"
 #include "core/base/failpoint.h"
 #include "core/base/printable.h"
 #include "core/base/text.h"
@@ -405,7 +405,7 @@ core::Status JobIntake::forget(uint64_t id) {
   core::Status removed = context_.store->remove_job(id);
   if (removed) return removed;
   // A full disk cannot even store that the job is gone: what is to go makes the room.
-  remove_some(context_.films_folder(id), kFiles);
+  context_.films->remove(id, kFiles);
   remove_some(context_.output_folder(id), kFiles);
   return context_.store->remove_job(id);
 }

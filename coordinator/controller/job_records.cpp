@@ -1,10 +1,8 @@
 #include "coordinator/controller/job_records.h"
 
 #include <chrono>
-#include <filesystem>
 #include <memory>
 #include <optional>
-#include <system_error>
 #include <utility>
 
 #include <fmt/format.h>
@@ -243,8 +241,7 @@ bool JobRecords::store_end(uint64_t id) {
       [this, id, done = job.state == StoredState::done, over = std::move(over)]() mutable {
         over.reset();  // waits for the film store's thread
         // Films of frames that failed stay, should they be retried.
-        std::error_code ignored;
-        if (done) std::filesystem::remove_all(context_.films_folder(id), ignored);
+        if (done) context_.films->remove(id, UINT64_MAX);
         jobs_.left(id);
         return true;
       },

@@ -3,10 +3,8 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
-#include <filesystem>
 #include <optional>
 #include <string>
-#include <system_error>
 #include <utility>
 #include <vector>
 
@@ -142,11 +140,9 @@ core::Status JobStarter::start(std::unique_ptr<ActiveJob> owned, RestoredJob res
 core::Status JobStarter::prepare(ActiveJob& active, RestoredJob restored, JobAdded& added) {
   const NotSharedYet alone;
   int32_t tile_size = tile_size_of(active);
-  std::error_code unknown;
-  const bool films = std::filesystem::exists(context_.films_folder(active.stored.id), unknown);
-  if (unknown)
-    return core::Error{context_.films_folder(active.stored.id) + ": " + unknown.message()};
-  if (films) {
+  const auto films = context_.films->contains(active.stored.id);
+  if (!films) return films.error();
+  if (*films) {
     active.film_store = films_.make(active, true);
     auto contents = active.film_store->open();
     if (!contents) return contents.error();

@@ -1,24 +1,19 @@
 #include "coordinator/controller/sweeper.h"
 
 #include <algorithm>
-#include <charconv>
 #include <chrono>
 #include <cstddef>
-#include <filesystem>
 #include <mutex>
-#include <system_error>
 #include <thread>
 #include <unordered_set>
 #include <utility>
 #include <vector>
 
-#include "coordinator/controller/remove_folder.h"
+#include "coordinator/film_store/remove_folder.h"
 #include "farm/wire.h"
 
 namespace hyades::coordinator {
 namespace {
-
-namespace fs = std::filesystem;
 
 constexpr uint64_t kPageBytes = uint64_t{16} << 20U;  // of what jobs ask for, in memory together
 /// Files that are looked at, and perhaps removed, before others may submit.
@@ -32,19 +27,6 @@ constexpr Duration kOthersTurn = std::chrono::milliseconds(1);
 constexpr Duration kTryAgain = std::chrono::seconds(1);
 constexpr Duration kShortestRound = std::chrono::milliseconds(100);
 constexpr Duration kLongestRound = std::chrono::minutes(10);
-
-/// The jobs that have a folder in `folder`.
-std::vector<uint64_t> numbered_folders(const std::string& folder) {
-  std::vector<uint64_t> ids;
-  std::error_code failed;
-  for (fs::directory_iterator at(folder, failed), end; !failed && at != end; at.increment(failed)) {
-    const std::string name = at->path().filename().string();
-    uint64_t id = 0;
-    const auto read = std::from_chars(name.data(), name.data() + name.size(), id);
-    if (read.ec == std::errc() && read.ptr == name.data() + name.size()) ids.push_back(id);
-  }
-  return ids;
-}
 
 }  // namespace
 
@@ -72,7 +54,7 @@ void Sweeper::drop_folders(uint64_t job, const std::string& owner) {
   leftovers_.add(
       job,
       [this, job] {
-        return context_.stop || (remove_some(context_.films_folder(job), kPieceFiles) &&
+        return context_.stop || (context_.films->remove(job, kPieceFiles) &&
                                  remove_some(context_.output_folder(job), kPieceFiles));
       },
       owner);
@@ -81,19 +63,21 @@ void Sweeper::drop_folders(uint64_t job, const std::string& owner) {
 /// Removes folders of jobs that are deleted, and films of jobs that are done: a crash came between.
 /// Whether the store has answered for all.
 bool Sweeper::sweep_folders() {
-  for (const char* kind : {"/films/", "/outputs/"}) {
-    const std::string folder = context_.options.folder + kind;
-    for (const uint64_t id : numbered_folders(folder)) {
-      // A job that is done may be reopened, and its films with it.
-      const std::lock_guard one(context_.submissions);
-      const auto state = context_.store->state(id);
-      if (context_.stop || !state) return false;
-      std::error_code ignored;
-      if (!*state) {
-        drop_folders(id, {});
-      } else if (folder.ends_with("/films/") && **state == StoredState::done) {
-        fs::remove_all(folder + std::to_string(id), ignored);
-      }
+  const auto with_films = context_.films->jobs();
+  return with_films && sweep_folders(*with_films, true) &&
+         sweep_folders(numbered_folders(context_.options.files + "/outputs"), false);
+}
+
+bool Sweeper::sweep_folders(const std::vector<uint64_t>& jobs, bool of_films) {
+  for (const uint64_t id : jobs) {
+    // A job that is done may be reopened, and its films with it.
+    const std::lock_guard one(context_.submissions);
+    const auto state = context_.store->state(id);
+    if (context_.stop || !state) return false;
+    if (!*state) {
+      drop_folders(id, {});
+    } else if (of_films && **state == StoredState::done) {
+      context_.films->remove(id, UINT64_MAX);
     }
   }
   return true;
@@ -139,7 +123,7 @@ core::Status Sweeper::sweep_assets(Duration grace) {
       if (core::Status spared = spare_needed(names, seen); !spared) return spared;
       for (size_t i = 0; i < kNamesAtOnce && !names.empty(); ++i) {
         const auto name = names.begin();
-        const bool gone = context_.assets->remove_unused(*name, grace);
+        const bool gone = context_.options.leads() && context_.assets->remove_unused(*name, grace);
         if (gone) unclaimed_.remove(*name);
         all = all && gone;
         names.erase(name);

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <string>
 #include <unordered_set>
+#include <vector>
 
 #include "coordinator/controller/controller_context.h"
 #include "coordinator/controller/unclaimed_files.h"
@@ -29,6 +30,7 @@ class Sweeper {
   void drop_rows();
   void drop_folders(uint64_t job, const std::string& owner);
   bool sweep_folders();
+  bool sweep_folders(const std::vector<uint64_t>& jobs, bool of_films);
   core::Status sweep_assets(Duration grace);
   core::Status spare_needed(std::unordered_set<std::string>& names, uint64_t& after);
 

@@ -86,8 +86,9 @@ class FilmLog {
   /// Gives every stored record to `visitor`: the newest snapshot's first, then those appended
   /// since, in order. Stops at a torn tail and cuts it off; skips damaged records by searching for
   /// the next whole one, and reports both. A record that the visitor refuses is reported and
-  /// skipped too. To be called once, before the first append. Fails only where the folder cannot be
-  /// read or was written by a newer version.
+  /// skipped too. To be called once, before the first append. Fails only where the folder, or
+  /// for now a file in it (LogReader::passing_trouble), cannot be read, or was written by a newer
+  /// version.
   core::Result<ReplayReport> replay(const Visitor& visitor);
 
   /// Where the record stands that replay() gives to its visitor, or that the sink of compact() has

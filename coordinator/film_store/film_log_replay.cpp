@@ -38,6 +38,7 @@ struct FilmLog::Replay {
   uint64_t covered = 0;          ///< records up to this number stand in the snapshot
   uint64_t last_sequence = 0;
   std::unordered_set<uint64_t> seen;  ///< a group whose sync failed was written twice
+  std::string trouble{};              ///< LogReader::passing_trouble() of some segment
 };
 
 Result<ReplayReport> FilmLog::replay(const Visitor& visitor) {
@@ -50,7 +51,9 @@ Result<ReplayReport> FilmLog::replay(const Visitor& visitor) {
   if (!found) return found.error();
   Replay state{visitor, {}, {}, 0, 0, {}};
   if (Status s = find_newest_snapshot(*found, state); !s) return s.error();
-  segments_ = replay_segments(*found, state);
+  std::vector<Segment> segments = replay_segments(*found, state);
+  if (!state.trouble.empty()) return Error{state.trouble};
+  segments_ = std::move(segments);
   next_index_ = found->empty() ? 1 : found->back().index + 1;
   // After kill -9 some of what was read may still be on its way to the disk, and a
   // snapshot's name too, before what it replaces is removed.
@@ -138,6 +141,9 @@ Result<std::optional<SegmentHeader>> FilmLog::read_header(const Segment& segment
   if ((*reader)->size() >= bytes.size() && (*reader)->read(0, bytes)) {
     header = decode_segment_header(bytes);
   }
+  if (const std::string trouble = (*reader)->passing_trouble(); !trouble.empty()) {
+    return Error{trouble};
+  }
   if (header && header->version > kSegmentVersion) {
     return Error{fmt::format("{} was written by a newer version of Hyades (format {}, known: {})",
                              path(segment.name), header->version, kSegmentVersion)};
@@ -177,6 +183,11 @@ bool FilmLog::replay_segment(Segment& segment, bool last, Replay& state) {
     state.report.bytes += scanner.payload().size();
   }
 
+  // Nothing is cut off or taken for lost that is only not to be had now.
+  if (std::string trouble = (*reader)->passing_trouble(); !trouble.empty()) {
+    state.trouble = std::move(trouble);
+    return false;
+  }
   for (const SegmentScanner::Gap& gap : scanner.gaps()) {
     state.report.damaged_bytes += gap.end - gap.begin;
     note(state.report, fmt::format("{}: bytes {} to {} are damaged; what they held has to be "

@@ -38,7 +38,7 @@ FilmStore::FilmStore(FilmSet films, FilmStoreOptions options, Listener& listener
     : set_(std::move(films)),
       options_(std::move(options)),
       listener_(listener),
-      aside_(files(), options_.folder, set_.region) {}
+      aside_(aside_files(), aside_folder(), set_.region) {}
 
 FilmStore::~FilmStore() {
   drain();
@@ -92,11 +92,20 @@ core::Status FilmStore::open_log(bool erase) {
   if (!log) return log.error();
   log_ = std::move(*log);
   // All that an earlier run had set aside is in the log.
+  if (core::Status made = aside_files().make_folder(aside_folder()); !made) return made;
   return aside_.remove_left();
 }
 
 LogFiles& FilmStore::files() const {
   return options_.files != nullptr ? *options_.files : disk_log_files();
+}
+
+LogFiles& FilmStore::aside_files() const {
+  return options_.aside_folder.empty() ? files() : disk_log_files();
+}
+
+std::string FilmStore::aside_folder() const {
+  return options_.aside_folder.empty() ? options_.folder : options_.aside_folder;
 }
 
 core::Result<LogContents> FilmStore::open() {

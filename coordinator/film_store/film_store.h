@@ -65,6 +65,8 @@ struct FilmStoreOptions {
   /// The store gives up when nothing could be stored for this long.
   Duration patience = std::chrono::seconds(30);
   LogFiles* files = nullptr;  ///< the disk where null
+  /// A folder of this machine's disk for films that leave memory; empty: `folder`, among `files`.
+  std::string aside_folder;
   /// Held while a record of all of a film is in memory beside that film, or without it: where
   /// films have splats. So all stores that share it have one at a time. None where null.
   core::Mutex* whole_records = nullptr;
@@ -187,6 +189,8 @@ class FilmStore {
       HYADES_REQUIRES(own_thread_);
   void release(uint64_t memory);
   LogFiles& files() const;
+  LogFiles& aside_files() const;
+  std::string aside_folder() const;
   core::Status copy_aside(int32_t frame, const FilmLog::Sink& sink, Places& places)
       HYADES_REQUIRES(own_thread_);
   core::Status put_film(int32_t frame, const core::Film& film, const FilmLog::Sink& sink)

@@ -17,11 +17,11 @@
 namespace hyades::coordinator {
 
 /// Films of frames that are not in memory. Those of an earlier run stay where they are in the log;
-/// others get a file of their own beside it, for this run alone and never synced: the log holds
-/// their units as well.
+/// others get a file of their own, for this run alone and never synced: the log holds their units
+/// as well.
 class FilmsAside {
  public:
-  /// `folder`: the log's; `region`: of every frame.
+  /// `folder`: where files go, of one log alone; `region`: of every frame.
   FilmsAside(LogFiles& files, std::string folder, const core::PixelRect& region)
       : files_(files), folder_(std::move(folder)), region_(region) {}
 

@@ -32,6 +32,9 @@ class LogReader {
   virtual uint64_t size() const = 0;
   /// Fills `into` with what stands at `offset`; an error where the file ends before.
   virtual core::Status read(uint64_t offset, std::span<std::byte> into) = 0;
+  /// Why a read has failed that may succeed later; empty where none has. What a disk cannot read is
+  /// damaged.
+  virtual std::string passing_trouble() const { return {}; }
 };
 
 /// Exclusive use of a path, given back on destruction (or when the process dies).

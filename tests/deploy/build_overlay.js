@@ -17,16 +17,17 @@ function demand(right, what) {
   process.exit(1);
 }
 
-// A strategic merge: maps key by key, lists of things with names by name, other lists as a whole.
+// A strategic merge: maps key by key, lists of things with names by name, new ones first, other lists as a whole.
 function merge(into, patch) {
   for (const [key, value] of Object.entries(patch)) {
     if (is_map(value) && is_map(into[key])) merge(into[key], value);
     else if (Array.isArray(value) && Array.isArray(into[key]) && value.every((one) => one.name)) {
+      const fresh = value.filter((one) => !into[key].some((other) => other.name === one.name));
       for (const one of value) {
         const same = into[key].find((other) => other.name === one.name);
         if (same) merge(same, one);
-        else into[key].push(one);
       }
+      into[key].unshift(...fresh);
     } else into[key] = value;
   }
 }

@@ -37,6 +37,8 @@ class FaultyFiles final : public LogFiles {
   void fail_next_truncate() { fail_truncate_ = true; }
   /// No file can be opened to be read, as when the process has too many.
   void refuse_to_open(bool refuse) { refuse_to_open_ = refuse; }
+  /// What stands from here on cannot be read for now.
+  void refuse_to_read_from(uint64_t offset) { readable_ = offset; }
   /// All files together may hold this many bytes.
   void set_capacity(uint64_t bytes) { capacity_ = bytes; }
 
@@ -123,7 +125,8 @@ class FaultyFiles final : public LogFiles {
     const auto found = names_.find(path);
     if (found == names_.end()) return core::Error{path + " does not exist"};
     if (refuse_to_open_) return core::Error{path + ": too many open files"};
-    return std::unique_ptr<LogReader>(std::make_unique<Reader>(found->second->bytes));
+    return std::unique_ptr<LogReader>(
+        std::make_unique<Reader>(found->second->bytes, readable_.load()));
   }
 
   core::Status sync_file(const std::string& path) override {
@@ -212,11 +215,17 @@ class FaultyFiles final : public LogFiles {
 
   class Reader final : public LogReader {
    public:
-    explicit Reader(std::vector<std::byte> bytes) : bytes_(std::move(bytes)) {}
+    Reader(std::vector<std::byte> bytes, uint64_t readable)
+        : bytes_(std::move(bytes)), readable_(readable) {}
+    std::string passing_trouble() const override { return trouble_; }
     uint64_t size() const override { return bytes_.size(); }
     core::Status read(uint64_t offset, std::span<std::byte> into) override {
       if (offset > bytes_.size() || into.size() > bytes_.size() - offset) {
         return core::Error{"it ends too early"};
+      }
+      if (offset + into.size() > readable_) {
+        trouble_ = "it cannot be read now";
+        return core::Error{trouble_};
       }
       if (!into.empty()) std::memcpy(into.data(), bytes_.data() + offset, into.size());
       return {};
@@ -224,6 +233,8 @@ class FaultyFiles final : public LogFiles {
 
    private:
     std::vector<std::byte> bytes_;
+    uint64_t readable_;
+    std::string trouble_;
   };
 
   class Lock final : public LogLock {
@@ -254,6 +265,7 @@ class FaultyFiles final : public LogFiles {
   uint64_t capacity_ = UINT64_MAX;
   size_t write_budget_ = SIZE_MAX;
   std::atomic<bool> refuse_to_open_{false};
+  std::atomic<uint64_t> readable_{UINT64_MAX};
   bool fail_sync_ = false;
   bool fail_truncate_ = false;
 };

@@ -68,6 +68,25 @@ TEST(FilmLog, RefusesAnotherJobsLogAndASecondUser) {
   std::filesystem::remove_all(folder);
 }
 
+TEST(FilmLog, WhatCannotBeReadNowIsNeitherLostNorCutOff) {
+  FaultyFiles files;
+  {
+    Opened opened = open_log(files);
+    ASSERT_TRUE(opened.log);
+    for (int i = 0; i < 20; ++i) ASSERT_TRUE(opened.log->append(record_of(std::string(100, 'a'))));
+    ASSERT_TRUE(opened.log->sync().ok());
+  }
+  for (const uint64_t from : {uint64_t{0}, uint64_t{20}, uint64_t{60}, uint64_t{1000}}) {
+    files.refuse_to_read_from(from);
+    auto log = FilmLog::open(kFolder, "key", options_with(files));
+    if (!log) continue;  // not even whose it is
+    const auto replayed = (*log)->replay([](auto) { return core::Status(); });
+    EXPECT_FALSE(replayed.ok()) << from;
+  }
+  files.refuse_to_read_from(UINT64_MAX);
+  EXPECT_EQ(open_log(files).records.size(), 20U);
+}
+
 TEST(FilmLog, RefusesMisuse) {
   FaultyFiles files;
   EXPECT_FALSE(FilmLog::open(kFolder, "two\nlines", options_with(files)).ok());

@@ -3,6 +3,7 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <atomic>
 #include <condition_variable>
 #include <cstdlib>
@@ -18,6 +19,7 @@
 #include "coordinator/film_store/film_store.h"
 #include "tests/coordinator/film_store/fake_film.h"
 #include "tests/coordinator/film_store/faulty_files.h"
+#include "tests/support/temp_folder.h"
 
 namespace hyades::coordinator {
 namespace {
@@ -28,8 +30,8 @@ constexpr uint32_t kFilmSamples = 16;
 class Kept final : public FilmStore::Listener {
  public:
   explicit Kept(FaultyFiles& files, Duration patience = std::chrono::seconds(30),
-                KeptFilms before = KeptFilms::erase)
-      : film_store_(films(), log(files, patience, before), *this) {
+                KeptFilms before = KeptFilms::erase, const std::string& aside = {})
+      : film_store_(films(), log(files, patience, before, aside), *this) {
     EXPECT_TRUE(film_store_.open().ok());
     EXPECT_TRUE(film_store_.start(16).ok());
   }
@@ -128,8 +130,10 @@ class Kept final : public FilmStore::Listener {
                              [&] { return durable_.contains(record); });
   }
   static FilmSet films() { return {{1, 2, 3, 4}, {0, 0, 64, 16}, kFilmSamples}; }
-  static FilmStoreOptions log(FaultyFiles& files, Duration patience, KeptFilms before) {
+  static FilmStoreOptions log(FaultyFiles& files, Duration patience, KeptFilms before,
+                              const std::string& aside) {
     FilmStoreOptions log;
+    log.aside_folder = aside;
     log.kept = before;
     log.kept_aside = before != KeptFilms::erase;
     log.patience = patience;
@@ -300,6 +304,36 @@ TEST(FilmStore, FilmsThatAreSetAsideStayInTheLog) {
   Kept again(files, std::chrono::seconds(30), KeptFilms::require);
   EXPECT_EQ(again.digest_aside(1), before);
   EXPECT_EQ(path_aside(files), "");
+}
+
+TEST(FilmStore, FilmsThatAreSetAsideLieOnThisMachinesDiskWhereTheLogDoesNot) {
+  FaultyFiles files;
+  const test::TempFolder disk;
+  const std::string aside = disk.file("new/7");
+  const auto on_disk = [&] {
+    std::vector<std::string> names = disk_log_files().list(aside).value();
+    std::sort(names.begin(), names.end());
+    return names;
+  };
+  std::string before;
+  {
+    Kept kept(files, std::chrono::seconds(30), KeptFilms::erase, aside);
+    ASSERT_TRUE(kept.keep(1, tile(0)) && kept.keep(1, tile(1)) && kept.keep(2, tile(0)));
+    before = kept.digest(1);
+    ASSERT_TRUE(kept.set_aside(1) && kept.set_aside(2));
+    EXPECT_EQ(on_disk(), (std::vector<std::string>{"1.aside", "2.aside"}));
+    EXPECT_EQ(path_aside(files), "");
+    EXPECT_EQ(kept.digest_aside(1), before);
+    kept.make_room();
+    ASSERT_TRUE(kept.fetch(1));
+    EXPECT_EQ(kept.digest(1), before);
+    EXPECT_EQ(on_disk(), std::vector<std::string>{"2.aside"});
+  }
+  EXPECT_TRUE(on_disk().empty()) << "it goes with the store";
+  EXPECT_TRUE(disk_log_files().create(aside + "/3.aside").ok());  // what a kill would have left
+  Kept again(files, std::chrono::seconds(30), KeptFilms::require, aside);
+  EXPECT_TRUE(on_disk().empty());
+  EXPECT_EQ(again.digest_aside(1), before);
 }
 
 TEST(FilmStore, AFilmForWhichTheDiskHasNoRoomStays) {

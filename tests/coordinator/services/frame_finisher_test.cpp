@@ -16,6 +16,7 @@
 #include "coordinator/controller/frame_finisher.h"
 #include "coordinator/controller/frame_progress.h"
 #include "coordinator/controller/worker_table.h"
+#include "coordinator/film_store/disk_film_logs.h"
 #include "coordinator/finisher/finish_process.h"
 #include "coordinator/finisher/finish_task.h"
 #include "coordinator/meters/meters.h"
@@ -61,8 +62,10 @@ struct FinisherWorld {
     EXPECT_TRUE(assets.ok());
     ControllerOptions options;
     options.folder = folder.file("data");
+    options.files = options.folder;
     options.finisher = "/nonexistent";
-    context.emplace(options, std::move(*store), std::move(*assets), 1, "secret");
+    context.emplace(options, std::move(*store), disk_film_logs(folder.file("data/films")),
+                    std::move(*assets), 1, "secret");
     dispatcher.emplace(context->mutex, SchedulerOptions{});
     dispatcher->set_action_handler(failures);
     jobs.emplace(context->mutex);

@@ -10,7 +10,7 @@
 
 #include <fmt/format.h>
 
-#include "coordinator/controller/remove_folder.h"
+#include "coordinator/film_store/remove_folder.h"
 #include "core/base/descriptor.h"
 #include "core/film/film_codec.h"
 #include "core/film/film_exr.h"
@@ -239,8 +239,9 @@ TEST(Keeping, ManyUnusedFilesGoInTurnsWithSubmissions) {
   world.wrap_store = [&](std::unique_ptr<JobStore> store) {
     return std::make_unique<TroubledStore>(std::move(store), trouble);
   };
+  world.start();  // the folder is this farm's
+  world.stop();
   const std::string assets = world.options.folder + "/assets";
-  std::filesystem::create_directories(assets);
   for (int i = 0; i < 4500; ++i) {
     std::ofstream(assets + "/" + core::to_hex(core::sha256(std::to_string(i)))) << i;
   }
@@ -256,7 +257,8 @@ TEST(Keeping, ManyUnusedFilesGoInTurnsWithSubmissions) {
 TEST(Keeping, ALargeFileIsCheckedByOneThreadForAllWhoFetchIt) {
   FarmWorld world;
   const std::string name = core::to_hex(core::sha256("something else"));
-  std::filesystem::create_directories(world.options.folder + "/assets");
+  world.start();  // the folder is this farm's
+  world.stop();
   std::ofstream(world.options.folder + "/assets/" + name).close();
   std::filesystem::resize_file(world.options.folder + "/assets/" + name, uint64_t{512} << 20U);
   world.start();

@@ -122,6 +122,7 @@ TEST(Needs, OfOlderJobStoresAreTakenOver) {
                          nullptr, nullptr, nullptr),
             SQLITE_OK);
   sqlite3_close(db);
+  std::filesystem::remove(world.options.folder + "/farm-id");  // which older ones do not have
   world.start();
   EXPECT_EQ(job(asking).SerializeAsString(), before.SerializeAsString());
   EXPECT_EQ(job(plain).SerializeAsString(), plain_before.SerializeAsString());

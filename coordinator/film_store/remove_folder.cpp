@@ -1,10 +1,11 @@
-#include "coordinator/controller/remove_folder.h"
+#include "coordinator/film_store/remove_folder.h"
 
 #include <dirent.h>
 #include <fcntl.h>
 #include <unistd.h>
 
 #include <cerrno>
+#include <charconv>
 #include <filesystem>
 #include <string_view>
 #include <system_error>
@@ -58,6 +59,19 @@ bool remove_some(const std::string& folder, uint64_t most) {
   if (!empty_folder(open, most, 0)) return false;
   (void)::rmdir(folder.c_str());
   return true;
+}
+
+std::vector<uint64_t> numbered_folders(const std::string& folder) {
+  namespace fs = std::filesystem;
+  std::vector<uint64_t> ids;
+  std::error_code failed;
+  for (fs::directory_iterator at(folder, failed), end; !failed && at != end; at.increment(failed)) {
+    const std::string name = at->path().filename().string();
+    uint64_t id = 0;
+    const auto read = std::from_chars(name.data(), name.data() + name.size(), id);
+    if (read.ec == std::errc() && read.ptr == name.data() + name.size()) ids.push_back(id);
+  }
+  return ids;
 }
 
 }  // namespace hyades::coordinator
