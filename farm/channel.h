@@ -56,7 +56,7 @@ std::string plaintext_warning(const Peer& peer);
 /// How soon keepalive pings notice that a peer is dead or frozen while it is called.
 enum class Notices {
   patiently,  ///< within 30 s
-  soon        ///< within 4 s: another one may have taken its place
+  soon        ///< within 6 s: another one may have taken its place
 };
 
 /// A connection that reconnects by itself, to a `peer` of one address; its files have been read,

@@ -30,7 +30,7 @@ class PostgresServer {
 
   /// A new empty database, of which the role "farm" is the owner: its URL, with a password.
   std::string make_database();
-  /// The same by the socket, without a password.
+  /// A new empty database of the role "farm": its URL by the Unix socket, which has no password.
   std::string make_database_by_socket();
   std::string password() const { return password_; }
   uint16_t port() const { return port_; }
